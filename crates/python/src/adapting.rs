@@ -25,7 +25,7 @@ use crate::adapted::{Adapted, Reports, Tail};
 use crate::failure::Failure;
 use crate::flights::Flights;
 use crate::model::{Model, models_of, predicts_of};
-use crate::work::{Caller, run};
+use crate::work::{Caller, run, threads_in, threads_of};
 
 /// How tails learn, in the words of the Python files.
 #[derive(Debug, FromPyObject)]
@@ -37,7 +37,7 @@ pub(crate) struct Options {
     older: String,
     contradictions: String,
     absurd: String,
-    threads: Option<NonZeroUsize>,
+    threads: Option<i128>,
 }
 
 /// Every tail's flights learnt, from the initial part of its model or from what `begun` has learnt.
@@ -53,7 +53,9 @@ pub(crate) fn adapt(
     let models = models_of(&models)?;
     let flights = flights.clone();
     let begun = begun.map(|begun| Arc::clone(&begun.tails));
-    run(py, options.threads, move |caller| adapt_all(&models, &flights, &how, begun, caller))
+    run(py, threads_in(options.threads)?, move |caller| {
+        adapt_all(&models, &flights, &how, begun, caller)
+    })
 }
 
 /// The errors of models over flights; nothing is adapted. `predicts`: `whole` or `table`.
@@ -63,7 +65,7 @@ pub(crate) fn evaluate(
     models: Vec<Py<Model>>,
     flights: &Flights,
     predicts: &str,
-    threads: Option<NonZeroUsize>,
+    #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
 ) -> PyResult<Adapted> {
     let predicts = predicts_of(predicts)?;
     let models = models_of(&models)?;

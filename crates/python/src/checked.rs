@@ -20,7 +20,7 @@ use crate::failure::Failure;
 use crate::flights::{Flights, python_table};
 use crate::model::{Model, models_of};
 use crate::plots::drawn;
-use crate::work::run;
+use crate::work::{run, threads_in};
 
 /// JSON and text of `cruisefit check`.
 #[pyfunction]
@@ -60,7 +60,7 @@ pub(crate) struct MonitorAsked {
     basic_performance_factor_percent: Option<f64>,
     quick: bool,
     since: Option<String>,
-    threads: Option<NonZeroUsize>,
+    threads: Option<i128>,
 }
 
 /// Deviations, changes, events, fuel factors and costs of every tail that has learnt.
@@ -71,7 +71,7 @@ pub(crate) fn monitor_tails(
     asked: MonitorAsked,
 ) -> PyResult<Monitored> {
     let tails = Arc::clone(&adapted.tails);
-    let (document, options) = run(py, asked.threads, move |caller| {
+    let (document, options) = run(py, threads_in(asked.threads)?, move |caller| {
         let events = match &asked.events {
             Some(bytes) => events_of(bytes)?,
             None => Vec::new(),

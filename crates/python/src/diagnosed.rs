@@ -1,6 +1,5 @@
 //! Diagnoses: where models differ from flights and which effect they lack.
 
-use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use ::diagnose::Options;
@@ -25,7 +24,7 @@ use crate::failure::Failure;
 use crate::flights::Flights;
 use crate::model::{Model, models_of};
 use crate::plots::{chosen, drawn};
-use crate::work::run;
+use crate::work::{run, threads_in};
 
 /// The diagnoses of a call.
 #[pyclass(frozen, module = "cruisefit._native")]
@@ -54,7 +53,7 @@ pub(crate) struct Asked {
     allow_learnt: bool,
     events: Option<PyBackedBytes>,
     absurd: String,
-    threads: Option<NonZeroUsize>,
+    threads: Option<i128>,
 }
 
 /// Diagnoses by tail, or of all tails of a type together.
@@ -71,7 +70,7 @@ pub(crate) fn diagnose(
         ..Options::default()
     };
     let absurd = absurd_of(&asked.absurd)?;
-    let threads = asked.threads;
+    let threads = threads_in(asked.threads)?;
     let asked = RunOptions {
         effects: asked.effects,
         without: asked.without,

@@ -27,7 +27,7 @@ use crate::recorded_rows;
 use crate::recording::{Opening, Place, in_parallel};
 use crate::tables::{Whose, plain, to_batch, to_csv};
 use crate::warned::Warnings;
-use crate::work::{Caller, run};
+use crate::work::{Caller, run, threads_of};
 
 /// How reports are read: by which mapping and which trim criteria.
 #[pyclass(frozen, module = "cruisefit._native")]
@@ -71,7 +71,7 @@ impl Source {
         py: Python<'_>,
         paths: Vec<PathBuf>,
         columnar: Py<PyAny>,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let reading = self.clone();
         run(py, threads, move |caller| {
@@ -89,7 +89,7 @@ impl Source {
         py: Python<'_>,
         reports: Vec<(PathBuf, PyBackedBytes)>,
         columnar: Py<PyAny>,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let reading = self.clone();
         run(py, threads, move |caller| {
@@ -107,7 +107,7 @@ impl Source {
         py: Python<'_>,
         name: PathBuf,
         table: AnyRecordBatch,
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let Some(mapping) = self.mapping.clone() else {
             return Err(Failure::input("the rows of a recording need a mapping").into());

@@ -19,7 +19,7 @@ use crate::failure::{Failure, chain};
 use crate::flights::{batches_of, python_table};
 use crate::plots::{chosen, drawn};
 use crate::points::{self, Points, Returned};
-use crate::work::run;
+use crate::work::{run, threads_of};
 
 /// A model file.
 #[pyclass(frozen, module = "cruisefit._native")]
@@ -87,7 +87,7 @@ impl Model {
         table: AnyRecordBatch,
         predicts: &str,
         stated: (bool, Option<Vec<String>>, bool),
-        threads: Option<NonZeroUsize>,
+        #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Prediction> {
         let predicts = predicts_of(predicts)?;
         let (deviations, columns, with_given) = stated;

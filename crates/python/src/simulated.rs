@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use report::TextLayout;
 
 use crate::failure::{Failure, chain};
-use crate::work::run;
+use crate::work::{run, threads_of};
 
 /// The flights of a plan.
 #[pyclass(frozen, module = "cruisefit._native", get_all)]
@@ -27,7 +27,7 @@ pub(crate) struct Simulated {
 pub(crate) fn simulate(
     py: Python<'_>,
     plan: String,
-    threads: Option<NonZeroUsize>,
+    #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
 ) -> PyResult<Simulated> {
     run(py, threads, move |caller| {
         let plan = Plan::from_ron(&plan).map_err(|error| Failure::input(chain(&error)))?;

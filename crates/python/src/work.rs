@@ -31,6 +31,25 @@ impl Caller {
     }
 }
 
+/// A number of threads that a call is given; `None` for one per processor.
+///
+/// # Errors
+/// `InputError` for less than one, `TypeError` for what is no whole number.
+pub(crate) fn threads_of(given: &Bound<'_, PyAny>) -> PyResult<Option<NonZeroUsize>> {
+    Ok(threads_in(given.extract()?)?)
+}
+
+/// The same among options.
+///
+/// # Errors
+/// Less than one.
+pub(crate) fn threads_in(given: Option<i128>) -> Result<Option<NonZeroUsize>, Failure> {
+    let Some(found) = given else { return Ok(None) };
+    let threads = usize::try_from(found).ok().and_then(NonZeroUsize::new);
+    let refused = || Failure::input(format!("threads: found {found}, expected 1 or more"));
+    threads.ok_or_else(refused).map(Some)
+}
+
 /// Runs `job` in a pool of `threads` threads (one per processor without a number) and waits for it.
 ///
 /// # Errors

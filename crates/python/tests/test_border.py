@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import concurrent.futures
+import datetime
 import multiprocessing
 import os
 import pickle
@@ -286,6 +287,11 @@ def test_what_is_no_report_is_named(initial, segments, tmp_path):
     (tmp_path / "M.ron").write_bytes(b"PAR1\xff\xfe")
     with pytest.raises(cruisefit.InputError, match="M.ron: found byte 0xff, expected text in UTF-8"):
         cruisefit.Model.load(tmp_path / "M.ron")
+    # Warnings that differ in their numbers alone are one.
+    with pytest.warns(cruisefit.DataWarning) as caught:
+        cruisefit.errors.warn([f"file a.txt, line {line}: a gap" for line in (100, 9, 20, 30)] + ["another"])
+    told = [str(one.message) for one in caught]
+    assert told == ["file a.txt, line 9: a gap (and 3 more of this kind)", "another"]
     for call in (cruisefit.adapt, cruisefit.evaluate, cruisefit.diagnose):
         with pytest.raises(cruisefit.InputError, match="models: found none"):
             call(segments, [])
@@ -293,6 +299,24 @@ def test_what_is_no_report_is_named(initial, segments, tmp_path):
         cruisefit.adapt(segments, initial, begun="adapted")
     with pytest.raises(cruisefit.InputError, match="tsfc_engine_9"):
         cruisefit.diagnose(segments, initial, effects="tsfc_engine_9")
+
+
+def test_numbers_and_dates_that_a_call_takes(initial, segments):
+    for threads in (0, -1):
+        for call in (
+            lambda: initial.predict(POINTS, threads=threads),
+            lambda: cruisefit.segment(REPORT, threads=threads),
+            lambda: initial.adapt(segments, threads=threads),
+            lambda: initial.diagnose(segments, threads=threads),
+        ):
+            with pytest.raises(cruisefit.InputError, match=f"threads: found {threads}, expected 1 or more"):
+                call()
+    for threshold in (-1.0, float("nan")):
+        with pytest.raises(cruisefit.InputError, match="threshold_percent: found"):
+            initial.adapt(segments, law="paper", threshold_percent=threshold)
+    adapted = initial.adapt(segments)
+    by_date, by_text = (adapted.monitor(since=since) for since in (datetime.date(2018, 6, 1), "2018-06-01"))
+    assert by_date.to_json() == by_text.to_json()
 
 
 def test_segments_by_other_criteria_are_not_added(segments):

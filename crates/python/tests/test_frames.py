@@ -116,6 +116,7 @@ def test_types_that_came_in_go_out(initial, flow_of_mach):
         pl.Series("X-category", list("abcabc"), dtype=pl.Categorical),
         pl.Series("X-decimal", [decimal.Decimal("1.25")] * 6, dtype=pl.Decimal(10, 2)),
         pl.Series("X-list", [[1], [], None, [2, 3], [4], [5]]),
+        pl.Series("anti_ice", [0] * 6, dtype=pl.Int128),
         pl.Series("X-object", [object()] * 6, dtype=pl.Object),
     )
     predicted = initial.predict(polars)

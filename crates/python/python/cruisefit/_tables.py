@@ -88,9 +88,12 @@ def _is_frame_of(value: object, library: str) -> bool:
 
 
 def _of_polars(frame: Table) -> ArrowStream:
+    """A frame whose types the Arrow C interface has: what polars passes on for some is of its own."""
     polars = _module("polars")
-    if polars.Null in frame.dtypes:  # what polars passes on for it is not what the Arrow C interface has
-        frame = frame.with_columns(polars.col(polars.Null).cast(polars.Float64))
+    of_its_own = [getattr(polars, name, None) for name in ("Null", "Int128", "UInt128")]
+    found = [kind for kind in of_its_own if kind is not None and kind in frame.dtypes]
+    if found:
+        frame = frame.cast({kind: polars.Float64 for kind in found})
     return cast("ArrowStream", frame)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import hashlib
 import json
 import os
@@ -191,7 +192,7 @@ class Adaptation(_Run):
         flights_per_year: float | None = None,
         basic_performance_factor_percent: float | None = None,
         quick: bool = False,
-        since: str | None = None,
+        since: str | datetime.date | None = None,
         threads: int | None = None,
     ) -> Monitoring:
         """What changed on these tails, when and by how much: ``cruisefit monitor``.
@@ -204,7 +205,8 @@ class Adaptation(_Run):
             flights_per_year: Flights a year; as many as were recorded without it.
             basic_performance_factor_percent: Basic factor of the flight management system, in per cent.
             quick: Leave out the deviation by the model before it learnt each flight.
-            since: Only flights that began on or after this date (``2026-03-02``, or an instant with its offset).
+            since: Only flights that began on or after this date (``2026-03-02``, or an instant with its offset; also as a date or
+                an instant of ``datetime``).
             threads: Threads to use; all processors without it.
 
         Raises:
@@ -218,7 +220,7 @@ class Adaptation(_Run):
             "flights_per_year": flights_per_year,
             "basic_performance_factor_percent": basic_performance_factor_percent,
             "quick": quick,
-            "since": since,
+            "since": since.isoformat() if isinstance(since, datetime.date) else since,
             "threads": threads,
         }
         return Monitoring(_native.monitor_tails(self._native, asked))
@@ -320,6 +322,8 @@ def adapt(
     Raises:
         InputError: Two models claim the same tail or type, or ``begun`` was started with another model, law or setting.
     """
+    if threshold_percent is not None and not threshold_percent >= 0:
+        raise InputError(f"threshold_percent: found {threshold_percent}, expected 0 or more")
     options: dict[str, object] = {
         "law": law,
         "threshold_percent": threshold_percent,

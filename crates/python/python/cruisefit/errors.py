@@ -119,5 +119,29 @@ def warn(messages: Sequence[str]) -> None:
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and frame.f_code.co_filename.startswith(package):
         level, frame = level + 1, frame.f_back
-    for message in messages:
+    for message in _by_kind(messages):
         warnings.warn(in_python(message), DataWarning, stacklevel=level)
+
+
+# As many of a kind are raised one by one, as the command line prints them.
+_ONE_BY_ONE = 3
+_NUMBER = re.compile(r"\d+")
+
+
+def _by_kind(messages: Sequence[str]) -> list[str]:
+    """Many messages that differ in their numbers alone as the first of them and how many there are.
+
+    >>> _by_kind(["line 10: x", "y", "line 9: x", "line 11: x", "line 12: x"])
+    ['line 9: x (and 3 more of this kind)', 'y']
+    """
+    kinds: dict[str, list[str]] = {}
+    for message in messages:
+        kinds.setdefault(_NUMBER.sub("0", message), []).append(message)
+    shown = []
+    for kind in kinds.values():
+        if len(kind) <= _ONE_BY_ONE:
+            shown.extend(kind)
+            continue
+        first = min(kind, key=lambda message: [int(number) for number in _NUMBER.findall(message)])
+        shown.append(f"{first} (and {len(kind) - 1} more of this kind)")
+    return shown
