@@ -99,7 +99,7 @@ deciding_numbers! {
             "mean square that a name leaves beyond which it keeps that share, unless it closes most of the gap",
             OurChoice "Five standard deviations: sensors three times worse than stated leave nine times it.";
         LEAST_MADE_SMALLER: f64 = 0.1, "of the explainable gap",
-            "share of the explainable mean square by which effects have to make the gap smaller to be named, of fuel flow and of the split between engines together",
+            "share of the explainable mean square that named effects take off the gap (fuel flow and split between engines)",
             OurChoice "What leaves nine tenths of a gap beside other things that explain it is not its cause.";
         MORE_PROBABLE_THAN_NOT: f64 = 0.5, "",
             "probability of a cause, or of all named ones, above which it carries the verdict",

@@ -8,7 +8,7 @@ use lut::surface::{self, Basis};
 
 use super::GuideObservation;
 
-/// Rows about a row that say what is expected of it: four for each coefficient of a polynomial through them. Our choice.
+/// Rows about a row that say what is expected of it, at least: four for each coefficient of a polynomial through them. Our choice.
 const NEIGHBOURS: usize = 24;
 /// Share of a row's residual that its neighbours must leave unexplained. Of a row that is mistyped they explain next to
 /// none, of a drag rise most. Our choice.
@@ -50,14 +50,15 @@ fn percent_off_neighbours(basis: Basis, rows: &[GuideObservation], index: usize)
     };
     let mut others: Vec<&GuideObservation> =
         rows.iter().enumerate().filter(|(at, _)| *at != index).map(|(_, other)| other).collect();
-    if others.len() < NEIGHBOURS {
-        return None;
-    }
     others.sort_by(|one, other| distance(one).total_cmp(&distance(other)));
-    let points: Vec<(f64, f64, f64, f64)> = others[..NEIGHBOURS]
+    let points: Vec<(f64, f64, f64, f64)> = others
         .iter()
         .map(|other| (other.lift_coefficient, other.mach, other.drag_coefficient, 1.0))
         .collect();
-    let local = surface::fit(basis, &points).ok()?.surface;
+    // The nearest of a guide of few Mach numbers may be of one or two of them, which determine no polynomial: then more are asked.
+    let local = (NEIGHBOURS..=points.len())
+        .step_by(NEIGHBOURS / 2)
+        .find_map(|nearest| surface::fit(basis, &points[..nearest]).ok())?
+        .surface;
     Some(100.0 * (1.0 - local.value(row.lift_coefficient, row.mach) / row.drag_coefficient))
 }
