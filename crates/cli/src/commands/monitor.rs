@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     let ending = if document.alerts.is_empty() { Ending::Done } else { Ending::Alerts };
     // Of a large fleet the document is hundreds of megabytes.
     let json = arguments.json.json.then(|| document.to_json());
-    Ok(Outcome { json, ending, refused, ..Outcome::text(printed) })
+    Ok(Outcome { refused, json, ending, ..Outcome::text(printed) })
 }
 
 fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Result<(), Failure> {

@@ -103,7 +103,7 @@ impl Run<'_> {
                 None => Err(failure),
             }
         });
-        let Known { flights: known, new, refused, known_again, copies, stored } = match attempt {
+        let Known { flights: known, new, refused, learnt_before, copies, stored } = match attempt {
             Ok(found) => found,
             // A damaged tail costs itself, not the batch.
             Err(failure) => {
@@ -129,15 +129,15 @@ impl Run<'_> {
             sorting.contradictions = Contradictions::Relearn;
         }
         sorting.refused = refused;
-        sorting.already_known = known_again.len();
-        for (start, flight) in &known_again {
+        sorting.already_known = learnt_before.len();
+        for (start, flight) in &learnt_before {
             sorting.is_at_hand(*start, flight);
         }
         let reading = self.read(tail, start, &new, buffers, side_by_side);
         let learnt = stored.as_ref().map_or(&[][..], |stored| &stored.segments);
         let reading = self.plausible(reading, start, learnt);
         sorting.refused.extend(reading.refused);
-        let usable = known_again.len() + reading.flights.len();
+        let usable = learnt_before.len() + reading.flights.len();
         let costs = CriteriaCosts::of_flights(&reading.flights);
         for flight in reading.flights {
             sorting.sort(flight);

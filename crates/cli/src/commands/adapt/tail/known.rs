@@ -17,7 +17,7 @@ use crate::reading::heads::Head;
 pub(super) struct Known {
     pub(super) flights: Vec<KnownFlight>,
     /// Flights whose reports are at hand as they were learnt.
-    pub(super) known_again: Vec<FlightKey>,
+    pub(super) learnt_before: Vec<FlightKey>,
     /// Reports of flights that are not known.
     pub(super) new: Vec<Head>,
     /// Copies of these.
@@ -36,14 +36,14 @@ impl Run<'_> {
         buffers: &mut Buffers,
     ) -> Result<Known, Failure> {
         let flights = self.folder.flights(tail)?;
-        let (new, refused, known_again) = unknown(heads, &flights, buffers);
+        let (new, refused, learnt_before) = unknown(heads, &flights, buffers);
         let (new, copies) = without_copies(new, buffers);
         // Where flights may be learnt anew, damage is looked for without a new one too.
         let is_read = !new.is_empty() || self.arguments.relearn;
         let is_held = self.folder.holds(tail) && is_read;
         let stored = is_held.then(|| self.folder.load(tail)).transpose()?;
         self.keeps_remainder(stored.as_ref())?;
-        Ok(Known { flights, new, refused, known_again, copies, stored })
+        Ok(Known { flights, learnt_before, new, copies, refused, stored })
     }
 
     /// Whether reports are of at least as many flights as the folder has learnt of a tail: then nothing is lost with what the
@@ -84,7 +84,7 @@ fn unknown(
     let known = KnownFlights::new(known.to_vec());
     let mut new = Vec::new();
     let mut refused = Vec::new();
-    let mut known_again = Vec::new();
+    let mut learnt_before = Vec::new();
     for head in heads {
         let Some(flight) = known.find(head.start, &head.flight) else {
             new.push(head);
@@ -95,12 +95,12 @@ fn unknown(
             None => buffers.content_of(&head.path).map(|content| content == flight.entry.content),
         };
         match same {
-            Ok(true) => known_again.push((head.start, head.flight.into())),
+            Ok(true) => learnt_before.push((head.start, head.flight.into())),
             Ok(false) => new.push(head),
             Err(refusal) => refused.push(refusal),
         }
     }
-    (new, refused, known_again)
+    (new, refused, learnt_before)
 }
 
 /// A report that holds what another report of the batch holds, and that other report.
