@@ -162,23 +162,22 @@ fn begun_alike<'a>(
     refused: &mut Vec<RefusedReport>,
 ) -> Result<Chosen<'a>, Failure> {
     let known = tails.keys().filter(|tail| folder.holds(tail)).count();
-    let mut otherwise = BTreeMap::new();
-    for (tail, (start, _)) in &tails {
-        if let Some((what, difference)) = difference(folder, tail, start)? {
-            otherwise.insert(tail.clone(), (what, difference));
+    let (mut alike, mut otherwise) = (Chosen::new(), Vec::new());
+    for (tail, (start, heads)) in tails {
+        match difference(folder, &tail, &start)? {
+            Some(found) => otherwise.push((tail, heads, found)),
+            None => {
+                alike.insert(tail, (start, heads));
+            }
         }
     }
-    if otherwise.len() == known
-        && let Some((tail, (what, difference))) = otherwise.pop_first()
-    {
-        let folder = show(&arguments.output);
-        let difference = format!("{difference} (tail {tail})");
-        return Err(Failure::BegunOtherwise { folder, what, difference });
-    }
-    let (others, alike): (Chosen<'_>, Chosen<'_>) =
-        tails.into_iter().partition(|(tail, _)| otherwise.contains_key(tail));
-    for (tail, (_, heads)) in others {
-        let Some((what, difference)) = otherwise.remove(&tail) else { continue };
+    let is_of_run = otherwise.len() == known;
+    for (tail, heads, (what, difference)) in otherwise {
+        if is_of_run {
+            let folder = show(&arguments.output);
+            let difference = format!("{difference} (tail {tail})");
+            return Err(Failure::BegunOtherwise { folder, what, difference });
+        }
         let reason = format!("tail {tail} was begun with another {what}: {difference}");
         refused.extend(
             heads.into_iter().map(|head| RefusedReport::whole(head.path.into(), reason.clone())),
