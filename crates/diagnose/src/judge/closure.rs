@@ -70,8 +70,13 @@ impl Shrinkage {
         found
     }
 
+    /// Sum of the weights of all segments.
+    pub(crate) fn weight(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+
     fn mean(&self, sums: &[f64]) -> f64 {
-        sums.iter().sum::<f64>() / self.weights.iter().sum::<f64>()
+        sums.iter().sum::<f64>() / self.weight()
     }
 
     pub(crate) fn before(&self) -> f64 {
@@ -84,6 +89,12 @@ impl Shrinkage {
 
     pub(crate) fn floor(&self) -> f64 {
         self.mean(&self.floor)
+    }
+
+    /// Mean square of the gap above the noise floor; `None` where it is too small to ask how far it shrinks.
+    pub(crate) fn explainable(&self) -> Option<f64> {
+        let (before, floor) = (self.before(), self.floor());
+        (before - floor >= SMALLEST_GAP * floor).then_some(before - floor)
     }
 
     /// Root mean squares of every flight, %.
@@ -111,11 +122,7 @@ impl Shrinkage {
     /// The interval is of a bootstrap over flights, with the floor as propagated; `None` too where resamples leave nothing
     /// explainable, so that the ratio has no bound.
     pub(crate) fn closure(&self) -> Option<(f64, [f64; 2])> {
-        let (before, after, floor) = (self.before(), self.after(), self.floor());
-        if before - floor < SMALLEST_GAP * floor {
-            return None;
-        }
-        let closure = (before - after) / (before - floor);
+        let closure = (self.before() - self.after()) / self.explainable()?;
         let by_flight: Vec<(f64, f64)> = (0..self.before.len())
             .map(|k| (self.before[k] - self.after[k], self.before[k] - self.floor[k]))
             .collect();

@@ -116,7 +116,7 @@ pub(crate) fn gap_of(
         own.before.iter().zip(&own.weights).map(|(sum, n)| (sum - square * n).powi(2)).sum::<f64>()
             * flights
             / (flights - 1.0).max(1.0);
-    let half = NORMAL_95 * spread.sqrt() / own.weights.iter().sum::<f64>();
+    let half = NORMAL_95 * spread.sqrt() / own.weight();
     // The largest deviation any effect makes of noise alone, with as many looks as columns (Bonferroni).
     let plain = analysis
         .backgrounds

@@ -17,7 +17,6 @@ use crate::search::outside::Outside;
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
     FEWEST_CAUSES, LEAST_LISTED, LEAST_MADE_SMALLER, LISTED_PROBABILITY, SCATTER_INTERVAL,
-    SMALLEST_GAP,
 };
 
 /// An effect with its posterior.
@@ -66,10 +65,7 @@ struct Explainable {
 impl Explainable {
     /// `None` where the gap is too small to ask.
     fn new(own: &Shrinkage) -> Option<Self> {
-        let (before, floor) = (own.before(), own.floor());
-        let explainable = before - floor;
-        (explainable > SMALLEST_GAP * floor)
-            .then_some(Self { least: LEAST_MADE_SMALLER * explainable })
+        own.explainable().map(|explainable| Self { least: LEAST_MADE_SMALLER * explainable })
     }
 
     /// Whether a model's effects make the gap so much smaller. In a model with a background of small effects or a smooth function
