@@ -9,7 +9,6 @@ use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use crate::diagnosis_figures::DiagnosisFigures;
 use crate::diagnosis_months::months;
 use crate::model_file::ModelFile;
-use crate::models::Models;
 use crate::monitoring::Event;
 use crate::reading::{FlightRead, Reading, RefusedReport};
 use crate::table_uncertainty;
@@ -72,13 +71,18 @@ pub enum GroupErrorReason {
     Diagnose(#[from] DiagnoseError),
 }
 
-/// Flights by tail (or all of one model in a pool), as asked; those that their model has learnt, and those without a model,
-/// are moved to the refused ones.
-pub fn group<'a>(models: &'a Models, reading: &mut Reading, asked: &RunOptions) -> Vec<Group<'a>> {
+/// Flights by tail (or all of one model in a pool), as asked; those that their tail's model has learnt are moved to the refused
+/// ones. `models`: that of each tail, as [`Models::of_tails`](crate::models::Models::of_tails) gives them.
+pub fn group<'a>(
+    models: &BTreeMap<String, &'a ModelFile>,
+    reading: &mut Reading,
+    asked: &RunOptions,
+) -> Vec<Group<'a>> {
     let mut groups: BTreeMap<String, Group<'a>> = BTreeMap::new();
     let mut flights = std::mem::take(&mut reading.flights);
     flights.sort_by(FlightRead::order);
-    for (model, flight) in models.for_flights(flights, &mut reading.refused) {
+    for flight in flights {
+        let Some(&model) = models.get(&flight.reduced.identity.tail) else { continue };
         if has_learnt(model, &flight) {
             let finding = format!(
                 "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",

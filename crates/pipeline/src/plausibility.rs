@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::check::{CheckDocument, DataFinding, FlightCheck, book, check_flights};
 use crate::evaluation::evaluate;
+use crate::model_file::ModelFile;
 use crate::models::Models;
 use crate::summary::{RefusedSummary, ReportsSummary};
 use effects::ExtendedModel;
@@ -23,6 +24,14 @@ pub struct Book<'m> {
     pub learnt: Option<&'m [Segment]>,
 }
 
+impl<'m> Book<'m> {
+    /// That of a model for flights which it is not to learn.
+    #[must_use]
+    pub fn of(model: &'m ModelFile) -> Self {
+        Self { model: &model.initial, table: model.drag_coefficient(), learnt: None }
+    }
+}
+
 /// All that is wrong with what was read, also against the models of the flights where there are some. `now_s` as for
 /// [`findings`].
 pub fn check_document(
@@ -32,11 +41,10 @@ pub fn check_document(
 ) -> CheckDocument {
     let mut findings = findings(&reading.flights, now_s);
     if let Some(models) = models {
-        let book_of = |flight: &FlightRead| {
-            let model = models.for_flight(flight).ok()?;
-            Some(Book { model: &model.initial, table: model.drag_coefficient(), learnt: None })
-        };
-        findings.extend(against_book(&reading.flights, book_of));
+        let of_each = reading.flights.iter().zip(models.of_each(&reading.flights));
+        let with_books =
+            of_each.filter_map(|(flight, model)| Some((Book::of(model.ok()?), flight)));
+        findings.extend(judged(with_books).into_iter().map(|judged| judged.finding));
     }
     let reports = ReportsSummary {
         read: reading.flights.len(),
@@ -59,14 +67,6 @@ pub fn findings(flights: &[FlightRead], now_s: Option<f64>) -> Vec<DataFinding> 
     findings
 }
 
-/// What is wrong with the flights of each tail against the book of its model.
-pub fn against_book<'m>(
-    flights: &[FlightRead],
-    model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
-) -> Vec<DataFinding> {
-    judged(flights, model_of).into_iter().map(|judged| judged.finding).collect()
-}
-
 /// A finding against a book.
 struct Judged {
     finding: DataFinding,
@@ -74,18 +74,11 @@ struct Judged {
     is_slip: bool,
 }
 
-fn judged<'m>(
-    flights: &[FlightRead],
-    model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
-) -> Vec<Judged> {
-    let mut tails: BTreeMap<&str, Vec<(Book<'m>, &FlightRead)>> = BTreeMap::new();
-    for flight in flights {
-        // What has no model, or another than the rest of its tail, is refused for that.
-        let Some(book) = model_of(flight) else { continue };
-        let of_tail = tails.entry(&flight.reduced.identity.tail).or_default();
-        if of_tail.first().is_none_or(|(first, _)| std::ptr::eq(first.model, book.model)) {
-            of_tail.push((book, flight));
-        }
+/// What is wrong with the flights of each tail, all of which have one book.
+fn judged<'a>(flights: impl Iterator<Item = (Book<'a>, &'a FlightRead)>) -> Vec<Judged> {
+    let mut tails: BTreeMap<&str, Vec<(Book<'a>, &FlightRead)>> = BTreeMap::new();
+    for (book, flight) in flights {
+        tails.entry(&flight.reduced.identity.tail).or_default().push((book, flight));
     }
     let mut all = Vec::new();
     for (tail, mut of_tail) in tails {
@@ -133,14 +126,18 @@ pub enum Absurd {
 
 /// Serious findings in words, empty where there are none; unless they are accepted, the flights of tails that are absurdly
 /// far off the book, or of which all lie outside its table, are moved to the refused ones. Nothing could be learnt of the latter, and
-/// what is known already is refused when its mapping is corrected.
+/// what is known already is refused when its mapping is corrected. `book_of` a tail: what its flights are compared with.
 pub fn set_aside_absurd<'m>(
     reading: &mut Reading,
-    model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
+    book_of: impl Fn(&str) -> Option<Book<'m>>,
     absurd: Absurd,
 ) -> String {
     let mut serious = findings(&reading.flights, None);
-    let of_book = judged(&reading.flights, model_of);
+    let with_books = reading
+        .flights
+        .iter()
+        .filter_map(|flight| Some((book_of(&flight.reduced.identity.tail)?, flight)));
+    let of_book = judged(with_books);
     serious.extend(of_book.iter().map(|judged| judged.finding.clone()));
     serious.retain(|finding| finding.severity >= Severity::Serious);
     let told = if serious.is_empty() { String::new() } else { crate::check::to_text(&serious) };

@@ -14,7 +14,6 @@ use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
 use pipeline::merging::{self, Part};
-use pipeline::model_file::ModelFile;
 use pipeline::models::{Models, ReportsByModel, check_engines};
 use pipeline::plausibility::{self, Absurd, Book};
 use pipeline::reading::{FlightRead, Reading, RefusedReport};
@@ -71,16 +70,9 @@ pub(crate) fn evaluate(
     let models = models_of(&models)?;
     let flights = flights.clone();
     run(py, threads, move |caller| {
-        let reading = flights.distinct();
-        let mut refused = reading.refused.clone();
-        let mut by_tail: BTreeMap<String, (&ModelFile, Vec<FlightRead>)> = BTreeMap::new();
-        for (model, flight) in models.for_flights(reading.flights.clone(), &mut refused) {
-            by_tail
-                .entry(flight.reduced.identity.tail.clone())
-                .or_insert_with(|| (model, Vec::new()))
-                .1
-                .push(flight);
-        }
+        let mut reading = flights.distinct().clone();
+        let by_tail = models.with_flights(&mut reading);
+        let refused = reading.refused;
         let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
         let tails = by_tail
             .into_par_iter()

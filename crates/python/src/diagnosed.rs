@@ -12,7 +12,6 @@ use pipeline::diagnosis_text;
 use pipeline::fleet_diagnosis::{DiagnosedFleet, FleetRecord, diagnose_fleets, fleet_text};
 use pipeline::gaps_table;
 use pipeline::plausibility::{self, Book};
-use pipeline::reading::FlightRead;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
@@ -84,10 +83,8 @@ pub(crate) fn diagnose(
     let flights = flights.clone();
     run(py, threads, move |caller| {
         let mut reading = flights.distinct().clone();
-        let book_of = |flight: &FlightRead| {
-            let model = models.for_flight(flight).ok()?;
-            Some(Book { model: &model.initial, table: model.drag_coefficient(), learnt: None })
-        };
+        let models = models.of_tails(&mut reading);
+        let book_of = |tail: &str| models.get(tail).map(|model| Book::of(model));
         let findings = plausibility::set_aside_absurd(&mut reading, book_of, absurd);
         let groups = group(&models, &mut reading, &asked);
         let found = groups

@@ -20,7 +20,6 @@ use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
 use crate::progress::Progress;
-use crate::reading::FlightRead;
 use crate::terminal::kinds::Told;
 use crate::terminal::neutral;
 use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
@@ -49,10 +48,8 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let models = read_models(&arguments.models.models)?;
     let mut reading = distinct(read_reports(&arguments.reports, Checks::Made, progress)?);
     let files = reading.files();
-    let book_of = |flight: &FlightRead| {
-        let model = models.for_flight(flight).ok()?;
-        Some(Book { model: &model.initial, table: model.drag_coefficient(), learnt: None })
-    };
+    let models = models.of_tails(&mut reading);
+    let book_of = |tail: &str| models.get(tail).map(|model| Book::of(model));
     let absurd = if arguments.accept { Absurd::Accept } else { Absurd::Refuse };
     tell_serious(&plausibility::set_aside_absurd(&mut reading, book_of, absurd));
     let groups = group(&models, &mut reading, &asked);

@@ -1,6 +1,5 @@
 //! `cruisefit evaluate`: the fuel-flow error of a model over reports; nothing is adapted.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use effects::ExtendedModel;
@@ -62,24 +61,17 @@ pub(crate) fn evaluate(
     progress: Progress,
 ) -> Result<Evaluation, Failure> {
     let models = read_models(&arguments.models.models)?;
-    let reading = prepare(&arguments.reports, progress)?;
+    let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
+    let by_tail = models.with_flights(&mut reading);
     let mut refused = reading.refused;
-    let mut by_tail: BTreeMap<String, (ModelFile, Vec<FlightRead>)> = BTreeMap::new();
-    for (model, flight) in models.for_flights(reading.flights, &mut refused) {
-        by_tail
-            .entry(flight.reduced.identity.tail.clone())
-            .or_insert_with(|| (model.clone(), Vec::new()))
-            .1
-            .push(flight);
-    }
     refused.sort_by(|one, other| one.path.cmp(&other.path));
     check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;
     let predicts = Predicts::table_only(arguments.table_only);
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
     let tails: Vec<EvaluatedTail> = by_tail
         .into_iter()
-        .map(|(tail, (model, flights))| EvaluatedTail::new(tail, model, flights, predicts))
+        .map(|(tail, (model, flights))| EvaluatedTail::new(tail, model.clone(), flights, predicts))
         .collect();
     let summary = Summary {
         schema: SCHEMA,

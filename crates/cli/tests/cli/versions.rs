@@ -102,11 +102,10 @@ fn a_tail_is_judged_by_what_it_is_known_to_burn() {
 }
 
 /// A model of the fixture's aircraft under another type's name.
-fn model_of_type(folder: &Path, type_code: &str) -> PathBuf {
+fn model_of_type(folder: &Path, type_code: &str, guide: &Path) -> PathBuf {
     let (aircraft, model) = (folder.join("OTHER.ron"), folder.join("OTHER_MODEL.ron"));
     let text = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
     std::fs::write(&aircraft, text.replace("\"global5000\"", &format!("{type_code:?}"))).unwrap();
-    let guide = fixture("guide.csv");
     let words = ["init".as_ref(), "--aircraft".as_ref(), aircraft.as_os_str()];
     let more = ["--guide".as_ref(), guide.as_os_str(), "-o".as_ref(), model.as_os_str()];
     cruisefit(&[&words[..], &more[..]].concat()).expect(0);
@@ -119,7 +118,7 @@ fn model_of_type(folder: &Path, type_code: &str) -> PathBuf {
 fn a_report_of_another_type_costs_itself() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
-    let other = model_of_type(scratch.path(), "A320");
+    let other = model_of_type(scratch.path(), "A320", &fixture("guide.csv"));
     let mistyped = |flight: u32| {
         let name = format!("mistyped{flight}.txt");
         changed(scratch.path(), flight, &name, |text| {
@@ -154,7 +153,7 @@ fn a_report_of_another_type_costs_itself() {
 fn a_tail_of_another_book_does_not_end_the_night() {
     let scratch = tempfile::tempdir().unwrap();
     let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
-    let other = model_of_type(scratch.path(), "A320");
+    let other = model_of_type(scratch.path(), "A320", &fixture("guide.csv"));
     let of_other_tail = |flight: u32| {
         changed(scratch.path(), flight, &format!("other{flight}.txt"), |text| {
             text.replace("AIRCRAFT global5000", "AIRCRAFT A320").replace("SIM-01", "SIM-02")
@@ -243,4 +242,39 @@ fn a_folder_behind_a_link_is_started_over_where_it_lies() {
     assert!(link.is_symlink() && scratch.path().join("real.1/STATE.ron").exists());
     let flights = std::fs::read_to_string(real.join("flights/SIM-01.csv")).unwrap();
     assert_eq!(flights.lines().count(), 3);
+}
+
+/// The flights of a tail are held against the book of their own type: with a mistyped report first they were held against that of
+/// another, by which they burn half.
+#[test]
+fn a_mistyped_first_report_does_not_choose_the_book_of_its_tail() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let twice = |(place, line): (usize, &str)| match line.rsplit_once(',') {
+        Some((rest, flow)) if place > 0 => {
+            format!("{rest},{}\n", 2.0 * flow.parse::<f64>().unwrap())
+        }
+        _ => format!("{line}\n"),
+    };
+    let text = std::fs::read_to_string(fixture("guide.csv")).unwrap();
+    let guide = scratch.path().join("thirsty.csv");
+    std::fs::write(&guide, text.lines().enumerate().map(twice).collect::<String>()).unwrap();
+    let other = model_of_type(scratch.path(), "A320", &guide);
+    let stray = changed(scratch.path(), 1, "mistyped.txt", |text| {
+        text.replace("AIRCRAFT global5000", "AIRCRAFT A320")
+    });
+    let ran = |command: &str| {
+        let mut words: Vec<std::ffi::OsString> = vec![command.into()];
+        words.extend([&stray, &report(2), &report(3)].map(|path| path.clone().into_os_string()));
+        for path in [&model, &other] {
+            words.extend(["--model".into(), path.clone().into_os_string()]);
+        }
+        if command == "diagnose" {
+            words.extend(["-o".into(), scratch.path().join("diagnosed").into_os_string()]);
+        }
+        cruisefit(&words)
+    };
+    let diagnosed = ran("diagnose").expect(1);
+    assert!(diagnosed.stdout.contains("2 reports read, 1 refused"), "{}", diagnosed.stdout);
+    assert!(!ran("check").stdout.contains("off the book"));
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::{Models, NoModel};
 use crate::model_file::ModelFile;
-use crate::reading::{FlightRead, RefusedReport};
+use crate::reading::{FlightRead, Reading, RefusedReport};
 
 /// A tail's reports by the models that are theirs. A model learns from, and is held against, flights of its own aircraft alone.
 #[derive(Debug)]
@@ -69,33 +69,57 @@ impl<'m, R> ReportsByModel<'m, R> {
 }
 
 impl Models {
-    /// Flights with the model of each, in their order: one model for all flights of a tail. Those without a model are moved to
-    /// the refused ones.
-    pub fn for_flights(
-        &self,
-        flights: Vec<FlightRead>,
-        refused: &mut Vec<RefusedReport>,
-    ) -> Vec<(&ModelFile, FlightRead)> {
-        let mut tails: BTreeMap<String, ReportsByModel<'_, (usize, FlightRead)>> = BTreeMap::new();
-        for (place, flight) in flights.into_iter().enumerate() {
-            match self.for_flight(&flight) {
-                Ok(model) => {
-                    let tail = flight.reduced.identity.tail.clone();
-                    tails.entry(tail).or_default().add(model, (place, flight));
-                }
-                Err(reason) => refused.push(RefusedReport::whole(flight.path, reason)),
+    /// The model of each flight, in their order, or why it has none: one model for all flights of a tail.
+    ///
+    /// # Errors
+    /// For each flight, why there is none.
+    pub fn of_each(&self, flights: &[FlightRead]) -> Vec<Result<&ModelFile, NoModel>> {
+        let mut tails: BTreeMap<&str, ReportsByModel<'_, usize>> = BTreeMap::new();
+        let mut found: Vec<_> = flights.iter().map(|flight| self.for_flight(flight)).collect();
+        for (place, flight) in flights.iter().enumerate() {
+            if let Ok(model) = found[place] {
+                tails.entry(&flight.reduced.identity.tail).or_default().add(model, place);
             }
         }
-        let mut found = Vec::new();
         for (tail, reports) in tails {
-            let Some(one) = reports.of_one(&tail, |_| false) else { continue };
-            found.extend(one.reports.into_iter().map(|(place, flight)| (place, one.model, flight)));
-            let strays = one.strays.into_iter();
-            refused.extend(
-                strays.map(|((_, flight), reason)| RefusedReport::whole(flight.path, reason)),
-            );
+            for (place, reason) in
+                reports.of_one(tail, |_| false).into_iter().flat_map(|o| o.strays)
+            {
+                found[place] = Err(reason);
+            }
         }
-        found.sort_by_key(|(place, ..)| *place);
-        found.into_iter().map(|(_, model, flight)| (model, flight)).collect()
+        found
+    }
+
+    /// The model of each tail. Flights without a model, or of another type than their tail, are moved to the refused ones.
+    pub fn of_tails(&self, reading: &mut Reading) -> BTreeMap<String, &ModelFile> {
+        let found = self.of_each(&reading.flights);
+        let mut tails = BTreeMap::new();
+        for (flight, model) in std::mem::take(&mut reading.flights).into_iter().zip(found) {
+            match model {
+                Ok(model) => {
+                    tails.insert(flight.reduced.identity.tail.clone(), model);
+                    reading.flights.push(flight);
+                }
+                Err(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
+            }
+        }
+        tails
+    }
+
+    /// The model of each tail with its flights, taken out of what was read. The others are refused as by [`of_tails`](Self::of_tails).
+    pub fn with_flights(
+        &self,
+        reading: &mut Reading,
+    ) -> BTreeMap<String, (&ModelFile, Vec<FlightRead>)> {
+        let models = self.of_tails(reading).into_iter();
+        let mut tails: BTreeMap<_, _> =
+            models.map(|(tail, model)| (tail, (model, Vec::new()))).collect();
+        for flight in std::mem::take(&mut reading.flights) {
+            if let Some((_, flights)) = tails.get_mut(&flight.reduced.identity.tail) {
+                flights.push(flight);
+            }
+        }
+        tails
     }
 }
