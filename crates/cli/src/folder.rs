@@ -10,7 +10,9 @@ mod contents;
 pub(crate) mod lock;
 pub(crate) mod names;
 pub(crate) mod older;
+mod removal;
 mod restart;
+mod salvage;
 pub(crate) mod state;
 #[cfg(test)]
 mod tests;
@@ -30,6 +32,7 @@ pub(crate) use contents::{
 };
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
+pub(crate) use salvage::Salvage;
 use state::{FileState, State, TailState};
 
 /// Whether a folder that exists is continued.
@@ -164,6 +167,15 @@ impl Folder {
         contents::stored_tail(&self.path, &self.state, tail, entry)
     }
 
+    /// What is still known of a tail whose files are damaged; `None` where they are sound.
+    ///
+    /// # Errors
+    /// A file that cannot be read at all.
+    pub(crate) fn salvage(&self, tail: &str) -> Result<Option<Salvage>, Failure> {
+        let entry = self.state.tails.get(tail);
+        entry.map_or(Ok(None), |entry| Salvage::of(&self.path, &self.state, tail, entry))
+    }
+
     /// Whether the folder has a file at this path now.
     pub(crate) fn has(&self, file: &str) -> bool {
         self.path.join(file).exists()
@@ -221,6 +233,10 @@ impl Folder {
         let text =
             state.to_text().map_err(|error| Failure::unwritable(&self.path, error))?.into_bytes();
         self.stage_unnamed(state::NAME, &text)?;
+        let gone = removal::no_longer_named(&self.state, &state);
+        if !gone.is_empty() {
+            self.stage_unnamed(removal::LIST, gone.as_bytes())?;
+        }
         let waiting = self.waiting();
         let publish = || -> std::io::Result<()> {
             steps::sync_below(&self.path)?;
@@ -228,9 +244,9 @@ impl Folder {
         };
         publish().map_err(|error| Failure::unwritable(&self.path, error))?;
         // From here on the new generation holds, whatever happens.
-        let old = std::mem::replace(&mut self.state, state);
+        self.state = state;
         self.older.clear();
-        if let Err(error) = self.settle(&old) {
+        if let Err(error) = self.settle() {
             tracing::warn!(
                 "{}: {error}; the run is stored, and the next one completes the moves of its files",
                 show(&self.path)
@@ -243,21 +259,9 @@ impl Folder {
     }
 
     /// Moves the files of a committed generation to their places and removes what it no longer names.
-    fn settle(&self, old: &State) -> std::io::Result<()> {
+    fn settle(&self) -> std::io::Result<()> {
         steps::sync_folder(&self.path)?;
-        self.move_files(&state::waiting(&self.state, &self.path))?;
-        let files = |state: &State| -> BTreeSet<String> {
-            let of_tail = |tail: &TailState| {
-                let deviations = tail.deviations.as_ref().map(|of| of.file.file.clone());
-                let others = [&tail.model, &tail.segments, &tail.flights];
-                others.map(|file| file.file.clone()).into_iter().chain(deviations)
-            };
-            state.tails.values().flat_map(of_tail).collect()
-        };
-        for file in files(old).difference(&files(&self.state)) {
-            steps::remove_file(&self.path.join(file))?;
-        }
-        Ok(())
+        self.move_files(&state::waiting(&self.state, &self.path))
     }
 
     /// Moves everything in a waiting folder to its place, makes that durable, and removes the folder.
@@ -273,6 +277,7 @@ impl Folder {
                 move_all(&from, &to)?;
             }
         }
+        removal::complete(waiting, &self.path)?;
         move_all(waiting, &self.path)?;
         for file in self.out_of_date.iter().map(|file| self.path.join(file)) {
             if file.is_file() {

@@ -53,25 +53,33 @@ pub(super) fn holds_anything(path: &Path) -> Result<bool, Failure> {
     Ok(entries.flatten().any(|entry| !entry.file_name().to_string_lossy().starts_with(TEMPORARY)))
 }
 
-/// Makes the folder that is to replace another, under the name that the other will have.
+/// Makes the folder that is to replace another, under the name that the other will have. `path` is locked: what a run that was
+/// killed left of its own is removed.
 pub(super) fn replacement(path: &Path) -> std::io::Result<PathBuf> {
+    for name in names_aside(path).take_while(|name| name.exists()) {
+        // An empty folder may be somebody's.
+        let is_left = std::fs::read_dir(&name).is_ok_and(|mut entries| entries.next().is_some());
+        if is_left && holds_anything(&name).is_ok_and(|holds| !holds) {
+            std::fs::remove_dir_all(&name)?;
+        }
+    }
     let replacement = free_name(path);
     std::fs::create_dir(&replacement)?;
     Ok(replacement)
 }
 
-/// `DIR.1`, or the first number that is free.
+/// The first of the names for old folders that is free.
 fn free_name(path: &Path) -> PathBuf {
-    let mut number = 1_u32;
-    loop {
+    names_aside(path).find(|name| !name.exists()).unwrap_or_else(|| path.with_extension("old"))
+}
+
+/// `DIR.1`, `DIR.2`, …
+fn names_aside(path: &Path) -> impl Iterator<Item = PathBuf> {
+    (1_u32..).map(|number| {
         let mut name = path.as_os_str().to_owned();
         name.push(format!(".{number}"));
-        let aside = PathBuf::from(name);
-        if !aside.exists() {
-            return aside;
-        }
-        number += 1;
-    }
+        PathBuf::from(name)
+    })
 }
 
 /// Exchanges the names of two folders: in one step where the system can.

@@ -39,10 +39,8 @@ pub(crate) fn waiting(state: &State, folder: &Path) -> PathBuf {
 /// A file that cannot be read, or whose SHA-256 is not that of the state.
 pub(crate) fn bytes_of(state: &State, folder: &Path, file: &FileState) -> Result<Vec<u8>, Failure> {
     let path = folder.join(&file.file);
-    // In this order: a file moves from the waiting folder to its place.
-    let bytes = std::fs::read(waiting(state, folder).join(&file.file))
-        .or_else(|_| std::fs::read(&path))
-        .map_err(|error| Failure::unreadable(&path, error))?;
+    let bytes =
+        found_bytes(state, folder, file).map_err(|error| Failure::unreadable(&path, error))?;
     if file.names(&bytes) {
         return Ok(bytes);
     }
@@ -54,6 +52,28 @@ pub(crate) fn bytes_of(state: &State, folder: &Path, file: &FileState) -> Result
                 .to_owned(),
         ),
     })
+}
+
+/// The bytes of a file of the state where it is as the state names it; `None` where it is damaged or gone.
+///
+/// # Errors
+/// A file that cannot be read, which need not be damaged.
+pub(crate) fn sound_bytes(
+    state: &State,
+    folder: &Path,
+    file: &FileState,
+) -> std::io::Result<Option<Vec<u8>>> {
+    match found_bytes(state, folder, file) {
+        Ok(bytes) => Ok(Some(bytes).filter(|bytes| file.names(bytes))),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+fn found_bytes(state: &State, folder: &Path, file: &FileState) -> std::io::Result<Vec<u8>> {
+    // In this order: a file moves from the waiting folder to its place.
+    std::fs::read(waiting(state, folder).join(&file.file))
+        .or_else(|_| std::fs::read(folder.join(&file.file)))
 }
 
 /// The folder in which files of a generation wait.

@@ -23,10 +23,15 @@ fn summary(tail: &str) -> TailSummary {
     serde_json::from_str(&json).unwrap()
 }
 
+/// The last tail is forgotten in version 2.
+fn tails_of(version: u32) -> &'static [&'static str] {
+    if version == 2 { &TAILS[..2] } else { &TAILS }
+}
+
 /// Stores a version of every tail. Files are not models here: a folder does not look into them.
 fn store(folder: Folder, version: u32) -> Result<(), crate::failure::Failure> {
     let mut tails = BTreeMap::new();
-    for tail in TAILS {
+    for tail in tails_of(version) {
         let text = |kind: &str| format!("{kind} of {tail}, version {version}\n").repeat(20);
         let state = TailState {
             begun: String::new(),
@@ -36,7 +41,7 @@ fn store(folder: Folder, version: u32) -> Result<(), crate::failure::Failure> {
             deviations: None,
             summary: summary(tail),
         };
-        tails.insert(tail.to_owned(), state);
+        tails.insert((*tail).to_owned(), state);
     }
     folder.stage("summary.json", version.to_string().as_bytes())?;
     folder.commit(tails)
@@ -58,8 +63,8 @@ fn version_seen(path: &Path) -> u32 {
             seen.push(digit.parse::<u32>().unwrap());
         }
     }
-    assert_eq!(seen.len(), 3 * TAILS.len());
     assert!(seen.iter().all(|version| *version == seen[0]), "{seen:?}");
+    assert_eq!(seen.len(), 3 * tails_of(seen[0]).len());
     seen[0]
 }
 
@@ -85,6 +90,8 @@ fn interrupted(step: usize, cut: u8, lost: Option<&mut dyn FnMut() -> bool>) -> 
     // The next run clears up and stores what it has.
     let folder = open(&path);
     assert_eq!(version_seen(&path), seen, "step {step}: opening changes nothing");
+    let of_tails = names_below(&path).into_iter().filter(|name| name.contains("C."));
+    assert_eq!(of_tails.count(), if seen == 2 { 0 } else { 3 }, "step {step}: {seen}");
     store(folder, 3).unwrap();
     let left: Vec<String> = names_below(&path);
     assert!(left.iter().all(|name| !name.contains(".cruisefit-")), "step {step}: {left:?}");

@@ -108,7 +108,7 @@ fn model_of_type(folder: &Path, type_code: &str, guide: &Path) -> PathBuf {
     std::fs::write(&aircraft, text.replace("\"global5000\"", &format!("{type_code:?}"))).unwrap();
     let words = ["init".as_ref(), "--aircraft".as_ref(), aircraft.as_os_str()];
     let more = ["--guide".as_ref(), guide.as_os_str(), "-o".as_ref(), model.as_os_str()];
-    cruisefit(&[&words[..], &more[..]].concat()).expect(0);
+    cruisefit(&[&words[..], &more[..], &["--accept".as_ref()]].concat()).expect(0);
     model
 }
 
@@ -227,6 +227,58 @@ fn a_damaged_tail_costs_itself_until_it_is_learnt_anew() {
         assert_eq!(mended[file], whole[file], "{file}");
     }
     cruisefit(&["monitor", folder]).expect(0);
+}
+
+/// Learning a damaged tail anew loses nothing: not a flight whose report is not at hand or cannot be used, not the law, and not
+/// what an option of one night would drop.
+#[test]
+fn a_damaged_tail_is_learnt_anew_only_as_it_was() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
+    adapt(&model, &output, &[report(1), report(2), report(3)], &[]).expect(0);
+    let path = output.join("models/SIM-01.ron");
+    let sound = std::fs::read(&path).unwrap();
+    std::fs::write(&path, [&sound[..], b"x"].concat()).unwrap();
+    let before = bytes_below(&output);
+    let relearn = |batch: &[PathBuf], more: &[&str]| {
+        adapt(&model, &output, batch, &[&["--relearn"], more].concat())
+    };
+    let lost = "flight 0001 of 2019-01-13T10:13:00Z, which it has learnt, would be lost";
+    relearn(&[report(2), report(3), report(4)], &[]).expect(2).says(lost);
+    let cut = changed(scratch.path(), 1, "cut.txt", |text| text[..text.len() / 20].to_owned());
+    relearn(&[cut, report(2), report(3)], &[]).expect(2).says("is not touched");
+    let all = [report(1), report(2), report(3)];
+    relearn(&all, &["--law", "paper"]).expect(2).says("was changed or damaged");
+    relearn(&all, &["--criteria", "airbus-report-02-short"]).expect(2);
+    assert_eq!(bytes_below(&output), before);
+    relearn(&all, &[]).expect(0).says("is learnt anew");
+    assert_eq!(std::fs::read(&path).unwrap(), sound);
+}
+
+/// What is refused for a setting, or cannot be read, is not damaged: nothing is learnt in its place.
+#[test]
+fn a_sound_tail_is_not_learnt_anew() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
+    let six: Vec<PathBuf> = (1..=6).map(report).collect();
+    adapt(&model, &output, &six, &[]).expect(0);
+    let before = bytes_below(&output);
+    let others: Vec<PathBuf> = (7..=12).map(report).collect();
+    for batch in [&six, &others] {
+        adapt(&model, &output, batch, &["--relearn", "--no-remainder"])
+            .expect(2)
+            .says("which --no-remainder would drop");
+        assert_eq!(bytes_below(&output), before);
+    }
+    // In place of a file that the user may not read, for the tests may run as root: a folder cannot be read either.
+    let segments = output.join("segments/SIM-01.csv");
+    let kept = std::fs::read(&segments).unwrap();
+    std::fs::remove_file(&segments).unwrap();
+    std::fs::create_dir(&segments).unwrap();
+    adapt(&model, &output, &others, &["--relearn"]).expect(2).says("is not touched");
+    std::fs::remove_dir(&segments).unwrap();
+    std::fs::write(&segments, kept).unwrap();
+    assert_eq!(bytes_below(&output), before);
 }
 
 /// A folder behind a link is started over where it lies: the link leads to the new one.

@@ -14,7 +14,7 @@ use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
 use pipeline::learning::LearningError;
-use pipeline::learnt_flights;
+use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::models::check_engines;
 use pipeline::monitoring::{flights_of, flights_to_csv};
 use pipeline::plausibility::{self, Absurd, Book};
@@ -25,12 +25,12 @@ use super::Run;
 use crate::commands::tell_serious;
 use crate::failure::{Failure, RefusedReport, refused_of};
 use crate::files::file_stem_of_tail;
-use crate::folder::Folder;
 use crate::folder::state::{DeviationsState, TailState};
+use crate::folder::{Folder, Salvage};
 use crate::reading::heads::Head;
 use crate::reading::{Buffers, FlightRead, Reading, Source};
 use crate::terminal::neutral;
-use known::{CopyOf, Known, without_copies};
+use known::{CopyOf, Known};
 
 /// So many reports of a tail are read before the first of them is learnt.
 pub(super) const READ_AT_A_TIME: usize = 64;
@@ -91,51 +91,32 @@ impl Run<'_> {
         side_by_side: bool,
     ) -> Result<TailOutcome, Failure> {
         let paths: Vec<Box<Path>> = heads.iter().map(|head| head.path.clone()).collect();
-        // Of a damaged tail everything is read once more, if that is asked for.
-        let all = self.arguments.relearn.then(|| heads.clone());
-        let attempt = self.known(tail, heads, buffers).or_else(|failure| {
-            match all.filter(|all| self.holds_whole(tail, all)) {
-                Some(all) => {
-                    tracing::warn!("{failure}; tail {tail} is learnt anew from its reports");
-                    let (new, copies) = without_copies(all, buffers);
-                    Ok(Known { new, copies, ..Known::default() })
-                }
-                None => Err(failure),
-            }
-        });
-        let Known { flights: known, new, refused, learnt_before, copies, stored } = match attempt {
+        let (found, damaged) = match self.known_or_anew(tail, start, heads, buffers) {
             Ok(found) => found,
             // A damaged tail costs itself, not the batch.
             Err(failure) => {
                 self.bar.advance(paths.len());
-                let refuse = |path: Box<Path>| {
-                    let reason = format!("tail {tail} is not touched: {failure}");
-                    RefusedReport::whole(path.into(), reason)
-                };
-                let refused = paths.into_iter().map(refuse).collect();
-                return Ok(TailOutcome { refused, ..self.untouched(tail) });
+                return Ok(self.refuse(tail, &paths, &failure.to_string()));
             }
         };
+        let Known { flights: known, new, refused, learnt_before, copies, stored } = found;
         self.bar.advance(paths.len() - new.len());
-        let mut known = KnownFlights::new(known);
-        if let Some(stored) = &stored {
-            known.add_segments(&stored.segments);
+        let reading = self.read(tail, start, &new, buffers, side_by_side);
+        let learnt = stored.as_ref().map_or(&[][..], |stored| &stored.segments);
+        let reading = self.plausible(reading, start, learnt);
+        if let Some((failure, left)) = damaged {
+            if let Some(lost) = left.lost(&reading.flights) {
+                self.bar.half(new.len());
+                return Ok(self.refuse(tail, &paths, &format!("{failure}; {lost}")));
+            }
+            tracing::warn!("{failure}; tail {tail} is learnt anew from its reports");
         }
-        let mut sorting = Sorting::new(tail, known);
-        if self.arguments.reports.strict {
-            sorting.older = OlderFlights::Refuse;
-        }
-        if self.arguments.relearn {
-            sorting.contradictions = Contradictions::Relearn;
-        }
+        let mut sorting = self.sorting(tail, known, stored.as_ref());
         sorting.refused = refused;
         sorting.already_known = learnt_before.len();
         for (start, flight) in &learnt_before {
             sorting.is_at_hand(*start, flight);
         }
-        let reading = self.read(tail, start, &new, buffers, side_by_side);
-        let learnt = stored.as_ref().map_or(&[][..], |stored| &stored.segments);
-        let reading = self.plausible(reading, start, learnt);
         sorting.refused.extend(reading.refused);
         let usable = learnt_before.len() + reading.flights.len();
         let costs = CriteriaCosts::of_flights(&reading.flights);
@@ -155,6 +136,54 @@ impl Run<'_> {
         outcome.add_copies(copies);
         self.bar.half(new.len());
         Ok(outcome)
+    }
+
+    /// What the folder knows of a tail and which reports are new; of a damaged tail that is to be learnt anew all of them are, and
+    /// what is wrong and still known of it is told beside.
+    fn known_or_anew(
+        &self,
+        tail: &str,
+        start: &Start<'_>,
+        heads: Vec<Head>,
+        buffers: &mut Buffers,
+    ) -> Result<(Known, Option<(Failure, Salvage)>), Failure> {
+        let all = self.arguments.relearn.then(|| heads.clone());
+        match self.known(tail, heads, buffers) {
+            Ok(found) => {
+                self.keeps_remainder(found.stored.as_ref().map(|stored| &stored.model))?;
+                Ok((found, None))
+            }
+            Err(failure) => match self.anew(tail, start, all, buffers)? {
+                Some((found, left)) => Ok((found, Some((failure, left)))),
+                None => Err(failure),
+            },
+        }
+    }
+
+    /// A tail that is left as it is, all of its reports refused.
+    fn refuse(&self, tail: &str, paths: &[Box<Path>], reason: &str) -> TailOutcome {
+        let refuse = |path: &Box<Path>| {
+            RefusedReport::whole(
+                path.clone().into(),
+                format!("tail {tail} is not touched: {reason}"),
+            )
+        };
+        TailOutcome { refused: paths.iter().map(refuse).collect(), ..self.untouched(tail) }
+    }
+
+    fn sorting(&self, tail: &str, known: Vec<KnownFlight>, stored: Option<&StoredTail>) -> Sorting {
+        let mut known = KnownFlights::new(known);
+        if let Some(stored) = stored {
+            known.add_segments(&stored.segments);
+        }
+        let mut sorting = Sorting::new(tail, known);
+        if self.arguments.reports.strict {
+            sorting.older = OlderFlights::Refuse;
+        }
+        if self.arguments.relearn {
+            sorting.contradictions = Contradictions::Relearn;
+        }
+        sorting
     }
 
     /// Reads a tail's reports and sets aside those that its model is not for.

@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use pipeline::adaptation::StoredTail;
+use pipeline::adaptation::{Start, StoredTail};
 use pipeline::known_flights::KnownFlights;
 use pipeline::learning::FlightKey;
 use pipeline::learnt_flights::KnownFlight;
+use pipeline::model_file::ModelFile;
 
 use crate::commands::adapt::Run;
 use crate::failure::{Failure, RefusedReport, show};
+use crate::folder::Salvage;
 use crate::reading::Buffers;
 use crate::reading::heads::Head;
 
@@ -42,23 +44,38 @@ impl Run<'_> {
         let is_read = !new.is_empty() || self.arguments.relearn;
         let is_held = self.folder.holds(tail) && is_read;
         let stored = is_held.then(|| self.folder.load(tail)).transpose()?;
-        self.keeps_remainder(stored.as_ref())?;
         Ok(Known { flights, learnt_before, new, copies, refused, stored })
     }
 
-    /// Whether reports are of at least as many flights as the folder has learnt of a tail: then nothing is lost with what the
-    /// folder has of it.
-    pub(super) fn holds_whole(&self, tail: &str, heads: &[Head]) -> bool {
-        let mut flights: Vec<_> = heads.iter().map(|head| (head.start, &head.flight)).collect();
-        flights.sort_unstable();
-        flights.dedup();
-        let learnt = self.folder.state_of(tail).map(|state| state.summary.flights);
-        learnt.is_some_and(|learnt| flights.len() >= learnt)
+    /// A tail that is damaged, to be learnt anew from all of its reports where that is asked for and it was begun with the same;
+    /// `None` otherwise.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a setting that would drop what was learnt.
+    pub(super) fn anew(
+        &self,
+        tail: &str,
+        start: &Start<'_>,
+        heads: Option<Vec<Head>>,
+        buffers: &mut Buffers,
+    ) -> Result<Option<(Known, Salvage)>, Failure> {
+        let Some(heads) = heads
+            .filter(|_| self.folder.state_of(tail).is_some_and(|state| state.begun == start.begun))
+        else {
+            return Ok(None);
+        };
+        let Some(left) = self.folder.salvage(tail)? else { return Ok(None) };
+        self.keeps_remainder(left.model.as_ref())?;
+        let (new, copies) = without_copies(heads, buffers);
+        Ok(Some((Known { new, copies, ..Known::default() }, left)))
     }
 
     /// A tail does not lose what it has learnt beyond its table.
-    fn keeps_remainder(&self, stored: Option<&StoredTail>) -> Result<(), Failure> {
-        let learnt = stored.and_then(|stored| stored.model.learnt.as_ref());
+    ///
+    /// # Errors
+    /// A setting by which it would.
+    pub(super) fn keeps_remainder(&self, stored: Option<&ModelFile>) -> Result<(), Failure> {
+        let learnt = stored.and_then(|model| model.learnt.as_ref());
         let has_one = learnt.is_some_and(|learnt| learnt.baseline.is_some());
         if self.arguments.no_remainder && has_one {
             return Err(Failure::BegunOtherwise {
