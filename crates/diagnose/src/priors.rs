@@ -193,6 +193,9 @@ deciding_numbers! {
         DECK_DEVIATION: f64 = 0.02, "of N2",
             "prior standard deviation of a deck coefficient about its least-squares value",
             OurChoice "Wide: least squares over the same flights is only a start.";
+        BLEED_DEVIATION: f64 = 0.005, "of N2",
+            "prior standard deviation of what anti-ice bleed changes N2 by, thrust the same",
+            OurChoice "Bleed turns the core faster or slower by some tenths of a per cent, by the engine's control; a deck has no variable for it.";
         THRUST_SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0], "",
             "shares of a remainder that may be thrust, as likely beforehand",
             OurChoice "From fuel alone to thrust alone; N2 says which, and hardly more finely.";

@@ -243,7 +243,7 @@ fn a_damaged_tail_is_learnt_anew_only_as_it_was() {
     let relearn = |batch: &[PathBuf], more: &[&str]| {
         adapt(&model, &output, batch, &[&["--relearn"], more].concat())
     };
-    let lost = "flight 0001 of 2019-01-13T10:13:00Z, which it has learnt, would be lost";
+    let lost = "flight 0001 of 2019-03-14T10:45:00Z, which it has learnt, would be lost";
     relearn(&[report(2), report(3), report(4)], &[]).expect(2).says(lost);
     let cut = changed(scratch.path(), 1, "cut.txt", |text| text[..text.len() / 20].to_owned());
     relearn(&[cut, report(2), report(3)], &[]).expect(2).says("is not touched");

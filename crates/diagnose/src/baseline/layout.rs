@@ -29,25 +29,31 @@ pub(crate) struct NuisanceLayout {
     pub(crate) chords: Range<usize>,
     /// Error of the recorded acceleration.
     pub(crate) acceleration: Range<usize>,
+    /// What anti-ice bleed changes N2 by.
+    pub(crate) bleed: Range<usize>,
     /// Loadings of the drag table's nodes.
     pub(crate) table: Range<usize>,
 }
 
-/// Whether the N2 deck is uncertain where no baseline has one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DeckColumns {
-    Present,
-    Absent,
+/// What is uncertain besides a baseline.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Uncertain {
+    /// Whether the N2 deck is, where no baseline has one.
+    pub(crate) deck: bool,
+    /// Whether anti-ice bleed may change N2.
+    pub(crate) bleed: bool,
+    /// Loadings of the drag table.
+    pub(crate) table_rank: usize,
 }
 
 impl NuisanceLayout {
     /// Of a baseline alone: what its covariance is over.
     pub(crate) fn of_baseline(remainder: usize, contrasts: usize, drag: usize) -> Self {
-        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0])
+        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0, 0])
     }
 
-    /// The same with what is uncertain at any time: chords, acceleration and `table_rank` loadings of the table.
-    pub(crate) fn of_design_with_baseline(baseline: &Self, table_rank: usize) -> Self {
+    /// The same with what is uncertain at any time: chords, acceleration, and what is named.
+    pub(crate) fn of_design_with_baseline(baseline: &Self, uncertain: Uncertain) -> Self {
         Self::tiled([
             baseline.remainder.len(),
             baseline.contrasts.len(),
@@ -56,26 +62,47 @@ impl NuisanceLayout {
             baseline.drag.len(),
             CHORD_COLUMNS,
             1,
-            table_rank,
+            usize::from(uncertain.bleed),
+            uncertain.table_rank,
         ])
     }
 
     /// Without a baseline.
-    pub(crate) fn of_design(deck: DeckColumns, table_rank: usize) -> Self {
-        let deck = if deck == DeckColumns::Present { DECK_TERMS } else { 0 };
-        Self::tiled([0, 0, deck, 0, 0, CHORD_COLUMNS, 1, table_rank])
+    pub(crate) fn of_design(uncertain: Uncertain) -> Self {
+        let deck = if uncertain.deck { DECK_TERMS } else { 0 };
+        let bleed = usize::from(uncertain.bleed);
+        Self::tiled([0, 0, deck, 0, 0, CHORD_COLUMNS, 1, bleed, uncertain.table_rank])
     }
 
     /// Widths in the order of the fields.
-    fn tiled(widths: [usize; 8]) -> Self {
+    fn tiled(widths: [usize; 9]) -> Self {
         let mut end = 0;
-        let [remainder, contrasts, deck, standing_effects, drag, chords, acceleration, table] =
-            widths.map(|width| {
-                let range = end..end + width;
-                end = range.end;
-                range
-            });
-        Self { remainder, contrasts, deck, standing_effects, drag, chords, acceleration, table }
+        let [
+            remainder,
+            contrasts,
+            deck,
+            standing_effects,
+            drag,
+            chords,
+            acceleration,
+            bleed,
+            table,
+        ] = widths.map(|width| {
+            let range = end..end + width;
+            end = range.end;
+            range
+        });
+        Self {
+            remainder,
+            contrasts,
+            deck,
+            standing_effects,
+            drag,
+            chords,
+            acceleration,
+            bleed,
+            table,
+        }
     }
 
     /// Number of columns.
@@ -104,6 +131,7 @@ mod tests {
             &layout.drag,
             &layout.chords,
             &layout.acceleration,
+            &layout.bleed,
             &layout.table,
         ] {
             for column in range.clone() {
@@ -119,17 +147,20 @@ mod tests {
             let baseline = NuisanceLayout::of_baseline(40, contrasts, 7 * contrasts);
             assert_tiled(&baseline);
             assert_eq!(baseline.of_baseline_range(), 0..baseline.len());
-            for rank in [0, 285] {
-                let design = NuisanceLayout::of_design_with_baseline(&baseline, rank);
+            for (table_rank, bleed) in [(0, false), (285, true)] {
+                let uncertain = Uncertain { bleed, table_rank, ..Uncertain::default() };
+                let design = NuisanceLayout::of_design_with_baseline(&baseline, uncertain);
                 assert_tiled(&design);
                 // What a baseline's covariance is over has the same places in the design.
                 assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
                 assert_eq!(design.standing_effects, baseline.standing_effects);
-                assert_eq!(design.len(), baseline.len() + CHORD_COLUMNS + 1 + rank);
+                let others = CHORD_COLUMNS + 1 + usize::from(bleed) + table_rank;
+                assert_eq!(design.len(), baseline.len() + others);
             }
         }
-        for (deck, columns) in [(DeckColumns::Present, DECK_TERMS), (DeckColumns::Absent, 0)] {
-            let design = NuisanceLayout::of_design(deck, 7);
+        for (deck, columns) in [(true, DECK_TERMS), (false, 0)] {
+            let uncertain = Uncertain { deck, table_rank: 7, ..Uncertain::default() };
+            let design = NuisanceLayout::of_design(uncertain);
             assert_tiled(&design);
             assert_eq!(design.len(), columns + CHORD_COLUMNS + 1 + 7);
             assert_eq!(design.deck, 0..columns);

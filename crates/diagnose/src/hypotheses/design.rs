@@ -10,11 +10,11 @@ use effects::{EffectReferences, Variable};
 use faer::Mat;
 
 use crate::baseline::Baseline;
-use crate::baseline::layout::{DeckColumns, NuisanceLayout};
+use crate::baseline::layout::{NuisanceLayout, Uncertain};
 use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
-use crate::priors::DECK_DEVIATION;
+use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::FlightWhitening;
@@ -61,13 +61,17 @@ impl<'a> Design<'a> {
         };
         let effects = data.columns();
         let acceleration = share_of_error(data);
-        let rank = table.map_or(0, TableUncertainty::rank);
-        let layout = if let Some(baseline) = baseline {
-            NuisanceLayout::of_design_with_baseline(&baseline.layout(), rank)
-        } else if data.channels.n2 {
-            NuisanceLayout::of_design(DeckColumns::Present, rank)
-        } else {
-            NuisanceLayout::of_design(DeckColumns::Absent, rank)
+        let is_bled = |row: &SegmentRow| row.point.anti_ice.is_some_and(|share| share > 0.0);
+        let uncertain = Uncertain {
+            deck: data.channels.n2,
+            bleed: data.channels.n2 && data.segments.iter().any(is_bled),
+            table_rank: table.map_or(0, TableUncertainty::rank),
+        };
+        let layout = match baseline {
+            Some(baseline) => {
+                NuisanceLayout::of_design_with_baseline(&baseline.layout(), uncertain)
+            }
+            None => NuisanceLayout::of_design(uncertain),
         };
         let nuisance = effects..effects + layout.len();
         let parts = Nuisance { layout, baseline, acceleration, table };
@@ -236,6 +240,13 @@ impl<'a> Design<'a> {
         }
         for column in columns(&layout.acceleration) {
             rows.put(column, &row.noise.acceleration.map(|value| value * parts.acceleration));
+        }
+        for column in columns(&layout.bleed) {
+            let mut values = [0.0; MAXIMUM_CHANNELS];
+            if row.is_recorded[channels.n2_row()] {
+                values[channels.n2_row()] = BLEED_DEVIATION * row.point.anti_ice.unwrap_or(0.0);
+            }
+            rows.put(column, &values);
         }
         if let Some(table) = parts.table {
             let loadings = &mut scratch[..layout.table.len()];
