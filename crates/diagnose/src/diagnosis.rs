@@ -328,7 +328,10 @@ fn conclude(
         addition: named_addition(analysis, library, &verdict, *model.references()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
-        outside: outside_library(&outside, found_forms, *model.references()),
+        outside: OutsideLibrary {
+            looked_for_all: options.effects.is_empty() && options.without.is_empty(),
+            ..outside_library(&outside, found_forms, *model.references())
+        },
         held_out: unseen.as_ref().map_or_else(Vec::new, Shrinkage::by_flight),
         left_out: BTreeMap::new(),
         outliers: vec![],
@@ -387,6 +390,7 @@ fn outside_library(
     let form = forms.first().and_then(FoundForm::applied);
     OutsideLibrary {
         probability: outside.probability,
+        looked_for_all: true,
         variable: outside.variable.map(|(variable, _)| variable),
         acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
         forms,
@@ -405,12 +409,13 @@ fn detectable(
     let [.., (most, _)] = PRIOR_SCALES;
     (0..library.effects.len())
         .map(|effect| {
-            let smallest = distances.smallest_detectable(effect);
+            let smallest = distances.smallest_detectable(library, effect);
             let largest = most * library.effects[effect].typical;
             let class = classes.iter().find(|class| class.contains(&effect));
             Detectable {
                 effect: id(effect),
                 smallest: (smallest <= largest).then_some(smallest),
+                hidden: library.columns[library.effects[effect].representative].hidden,
                 class: class.map_or_else(Vec::new, |class| class.iter().map(|&e| id(e)).collect()),
                 nearest_other: distances.nearest_other(library, effect),
                 nearest_pair: distances.nearest_pair(library, effect),

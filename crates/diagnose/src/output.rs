@@ -186,6 +186,8 @@ pub struct Detectable {
     /// Smallest size, in the effect's unit, seen with about 60 % probability; `None` where it is larger than is believed in of any
     /// aircraft.
     pub smallest: Option<f64>,
+    /// Its hidden parameter at that size: the usual value.
+    pub hidden: HiddenParameter,
     /// Effects that this data cannot tell from it at typical sizes, itself included.
     pub class: Vec<EffectId>,
     /// Distance at the typical size from the nearest single other effect, in noise standard deviations.
@@ -202,6 +204,8 @@ pub struct Detectable {
 pub struct OutsideLibrary {
     /// Probability.
     pub probability: f64,
+    /// Whether every effect of the library was looked for, and not only some that the caller chose.
+    pub looked_for_all: bool,
     /// The variable that what is left depends on; `None` where no function of one was tried.
     pub variable: Option<Variable>,
     /// What it acts on.

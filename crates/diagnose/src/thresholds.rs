@@ -19,6 +19,9 @@ deciding_numbers! {
         RECORDED_SHARE: f64 = 0.9, "of the segments",
             "share of the segments that must have what an effect needs",
             OurChoice "A column that is missing in every tenth segment is still a column.";
+        LONGEST_STEP: f64 = 3.0, "usual steps",
+            "time between two samples beyond which a recording has a hole, and gauges are not held against meters across it",
+            OurChoice "A row or two may be missing; a step climb that was left out takes longer.";
         SMALLEST_BURN_KG: f64 = 400.0, "kg",
             "smallest burn for which gauges are compared with meters",
             OurChoice "There the deviation of the gauges, 25 kg, is 6 % of the burn.";
@@ -243,6 +246,12 @@ deciding_numbers! {
         CONFUSED: f64 = 9.0, "standard deviations squared",
             "squared distance below which two effects share a class",
             OurChoice "Three standard deviations.";
+        FORM_DIRECTIONS: f64 = 3.0, "",
+            "directions in which the form of an effect may be off",
+            OurChoice "A slope, a curvature and one more bend over the variable that drives it; a level is its size.";
+        DECIDED: f64 = 5.0, "standard deviations",
+            "distance from which on two effects are told apart, and nothing more is advised",
+            OurChoice "Two standard deviations more than what a class is made of.";
         DETECTION: f64 = 4.0, "standard deviations",
             "size of an effect that would just be seen",
             OurChoice "By noise alone one look in 16 000 shows as much; the library has fewer than a hundred columns.";

@@ -4,7 +4,7 @@
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
 use diagnose::{Diagnosis, OutsideLibrary, Slice, Variable, Verdict};
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_months::MonthGap;
@@ -197,7 +197,11 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
         .iter()
         .filter_map(|id| {
             let entry = diagnosis.detectable.iter().find(|entry| entry.effect == *id)?;
-            Some(format!("{id} {} {}", digits(entry.smallest?), id.unit_words()))
+            let size = format!("{id} {} {}", digits(entry.smallest?), id.unit_words());
+            Some(match entry.hidden {
+                HiddenParameter::None => size,
+                hidden => format!("{size} ({hidden})"),
+            })
         })
         .collect();
     let mut lines = vec![silent_words(diagnosis).to_owned()];
@@ -211,7 +215,12 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
     let outside = &diagnosis.outside;
     let mut lines =
         vec![format!("{} (probability {:.2}).", outside_words(outside), outside.probability)];
-    if let Some(cause) = diagnosis.causes.first() {
+    // What makes other flights worse is not near.
+    let nearest = diagnosis
+        .causes
+        .first()
+        .filter(|cause| cause.closure.is_none_or(|closure| closure.share > 0.0));
+    if let Some(cause) = nearest {
         lines.push(format!(
             "The nearest is {} ({}); do not act on it.",
             cause.effect,

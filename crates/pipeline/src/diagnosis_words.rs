@@ -334,29 +334,37 @@ pub const fn left_out_words(reason: LeftOutReason) -> &'static str {
 
 /// A gap without a name in words: how surely nothing in the library explains it, what it depends on and acts on.
 pub fn outside_words(outside: &OutsideLibrary) -> String {
-    let mut words = no_effect_words(outside.probability).to_owned();
-    // What is described best by a level depends on nothing.
-    if !outside.forms.first().is_some_and(FoundForm::is_a_level) {
-        if let Some(variable) = outside.variable {
-            let _ = write!(words, "; it depends on {}", variable_words(variable));
-        }
-        if let Some(acts_on) = outside.acts_on {
-            let _ = write!(words, " and acts on {}", acts_on_words(acts_on));
-        }
+    let looked_for = if outside.looked_for_all {
+        "effect of the library"
+    } else {
+        "effect of those that were looked for"
+    };
+    // What is described best by a level depends on nothing, and is what effects of the library make.
+    if outside.forms.first().is_some_and(FoundForm::is_a_level) {
+        return format!(
+            "A real gap that is alike everywhere, and no single {looked_for} stands out"
+        );
+    }
+    let mut words = no_effect_words(outside.probability, looked_for);
+    if let Some(variable) = outside.variable {
+        let _ = write!(words, "; it depends on {}", variable_words(variable));
+    }
+    if let Some(acts_on) = outside.acts_on {
+        let _ = write!(words, " and acts on {}", acts_on_words(acts_on));
     }
     words
 }
 
-/// What is said of a gap that no effect of the library explains, with this probability.
-fn no_effect_words(probability: f64) -> &'static str {
+/// What is said of a gap that no effect explains, with this probability.
+fn no_effect_words(probability: f64, looked_for: &str) -> String {
     /// From here on it is said without reserve; our choice, as for every name.
     const SURE: f64 = 0.9;
     if probability >= SURE {
-        "A real gap that no effect of the library explains"
+        format!("A real gap that no {looked_for} explains")
     } else if probability > 0.5 {
-        "A real gap, and more probably than not no effect of the library explains it"
+        format!("A real gap, and more probably than not no {looked_for} explains it")
     } else {
-        "A real gap, and no effect of the library is more probable than not"
+        format!("A real gap, and no {looked_for} is more probable than not")
     }
 }
 

@@ -349,6 +349,11 @@ impl ModelFile {
         (one != other).then(|| format!("{other} against {one}"))
     }
 
+    /// The law by which it learns and the trim criteria of its segments; `None` of a model that has no tail.
+    pub fn learns_by(&self) -> Option<(&'static str, &str)> {
+        self.learnt.as_ref().map(|learnt| (learnt.law.name(), learnt.criteria.as_str()))
+    }
+
     /// A grid shared by the model's tables.
     pub fn grid(&self) -> &Arc<lut::Grid> {
         self.initial.drag_table().grid()

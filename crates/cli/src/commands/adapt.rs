@@ -11,7 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pipeline::adaptation::{LawAsked, Start, Starts};
 use pipeline::distinct::warn_of_copies;
-use pipeline::models::{Models, ReportsByModel};
+use pipeline::model_file::ModelFile;
+use pipeline::models::{Models, NoModel, ReportsByModel};
 use pipeline::reading::Checks;
 use rayon::prelude::*;
 
@@ -154,36 +155,55 @@ fn choose<'a>(
 /// reports of the others are refused, tail by tail.
 ///
 /// # Errors
-/// What every known tail was begun with otherwise: then it is the run that asks for something else.
+/// What every tail was begun with otherwise: then it is the run that asks for something else.
 fn begun_alike<'a>(
     tails: Chosen<'a>,
     arguments: &AdaptArgs,
     folder: &Folder,
     refused: &mut Vec<RefusedReport>,
 ) -> Result<Chosen<'a>, Failure> {
-    let known = tails.keys().filter(|tail| folder.holds(tail)).count();
     let (mut alike, mut otherwise) = (Chosen::new(), Vec::new());
+    let mut refuse = |heads: Vec<Head>, reason: &str| {
+        let all = heads.into_iter();
+        refused.extend(all.map(|head| RefusedReport::whole(head.path.into(), reason)));
+    };
     for (tail, (start, heads)) in tails {
         match difference(folder, &tail, &start)? {
-            Some(found) => otherwise.push((tail, heads, found)),
             None => {
                 alike.insert(tail, (start, heads));
             }
+            Some(Otherwise::Type(reason)) => refuse(heads, &reason.to_string()),
+            Some(Otherwise::Begun(what, found)) => otherwise.push((tail, heads, what, found)),
         }
     }
-    let is_of_run = otherwise.len() == known;
-    for (tail, heads, (what, difference)) in otherwise {
-        if is_of_run {
+    let goes_on = alike.keys().any(|tail| folder.holds(tail));
+    if !goes_on && let Some(new) = alike.values().next() {
+        // What all tails of a folder have in common is asked of the others.
+        let known = folder.tails().into_iter().find_map(|tail| folder.load(&tail).ok());
+        if let Some((what, difference)) =
+            known.and_then(|one| new.0.difference_of_folder(&one.model))
+        {
+            let folder = show(&arguments.output);
+            return Err(Failure::BegunOtherwise { folder, what, difference });
+        }
+    }
+    for (tail, heads, what, difference) in otherwise {
+        if !goes_on {
             let folder = show(&arguments.output);
             let difference = format!("{difference} (tail {tail})");
             return Err(Failure::BegunOtherwise { folder, what, difference });
         }
-        let reason = format!("tail {tail} was begun with another {what}: {difference}");
-        refused.extend(
-            heads.into_iter().map(|head| RefusedReport::whole(head.path.into(), reason.clone())),
-        );
+        refuse(heads, &format!("tail {tail} was begun with another {what}: {difference}"));
     }
     Ok(alike)
+}
+
+/// How a tail that the folder holds is not what its reports would go on with.
+enum Otherwise {
+    /// It is of another aircraft type: the reports are not its own.
+    Type(NoModel),
+    /// It was begun with something else: what, and both values.
+    Begun(&'static str, String),
 }
 
 /// Learns every tail. Many tails are learnt side by side, each by one thread; a tail with a large share of all reports
@@ -214,18 +234,26 @@ const fn law_of(arguments: &AdaptArgs) -> LawAsked {
     }
 }
 
-/// What a tail that the folder holds was begun with otherwise, and both values.
+/// What a tail that the folder holds was begun with otherwise.
 fn difference(
     folder: &Folder,
     tail: &str,
     start: &Start<'_>,
-) -> Result<Option<(&'static str, String)>, Failure> {
+) -> Result<Option<Otherwise>, Failure> {
     if !folder.holds(tail) || folder.state_of(tail).is_some_and(|s| s.begun == start.begun) {
         return Ok(None);
     }
     // A damaged tail is refused when its flights are.
     let Ok(stored) = folder.load(tail) else { return Ok(None) };
-    start.difference(tail, &stored.model).map_err(|error| tail::not_correctable(&error))
+    let type_of = |model: &ModelFile| model.initial.aircraft().type_code().to_owned();
+    let (found, expected) = (type_of(start.model), type_of(&stored.model));
+    if found != expected {
+        let tail = tail.to_owned();
+        return Ok(Some(Otherwise::Type(NoModel::TypeOfTail { found, expected, tail })));
+    }
+    let begun =
+        start.difference(tail, &stored.model).map_err(|error| tail::not_correctable(&error))?;
+    Ok(begun.map(|(what, difference)| Otherwise::Begun(what, difference)))
 }
 
 fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {

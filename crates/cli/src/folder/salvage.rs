@@ -1,8 +1,9 @@
 //! What is still known of a tail whose files are damaged, so that it can be learnt anew without losing a flight.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use flight::Segment;
 use pipeline::learning::FlightKey;
 use pipeline::learnt_flights;
 use pipeline::model_file::ModelFile;
@@ -17,14 +18,16 @@ use crate::failure::Failure;
 pub(crate) struct Salvage {
     /// Its model, where that is sound.
     pub(crate) model: Option<ModelFile>,
+    /// Its segments; empty where they are damaged.
+    pub(crate) segments: Vec<Segment>,
     learnt: Learnt,
 }
 
 /// The flights that a tail has learnt.
 #[derive(Debug)]
 enum Learnt {
-    /// These.
-    Flights(BTreeSet<FlightKey>),
+    /// These, each with its content where that is known.
+    Flights(BTreeMap<FlightKey, Option<String>>),
     /// So many: no file that names them is sound.
     Number(usize),
 }
@@ -53,13 +56,28 @@ impl Salvage {
         let model = model.and_then(|bytes| crate::models::model_of_bytes(&path, &bytes).ok());
         let flights = flights.and_then(|bytes| learnt_flights::read(tail, &bytes).ok());
         let flights = flights.map(|flights| {
-            flights.into_iter().map(|known| (known.start, known.entry.flight)).collect()
+            let keys = flights.into_iter();
+            keys.map(|known| ((known.start, known.entry.flight), Some(known.entry.content)))
+                .collect()
         });
+        let segments = segments.and_then(|bytes| segments_table::read(&bytes).ok());
+        let segments = segments.unwrap_or_default();
         let learnt = flights
             .or_else(|| model.as_ref().and_then(of_ledger))
-            .or_else(|| segments.and_then(|bytes| of_segments(&bytes, entry.summary.flights)))
+            .or_else(|| of_segments(&segments, entry.summary.flights))
             .map_or(Learnt::Number(entry.summary.flights), Learnt::Flights);
-        Ok(Some(Self { model, learnt }))
+        Ok(Some(Self { model, segments, learnt }))
+    }
+
+    /// Whether this content of a flight is known to be another than was learnt.
+    pub(crate) fn is_other_version(&self, flight: &FlightKey, content: &str) -> bool {
+        match &self.learnt {
+            Learnt::Flights(learnt) => {
+                let known = learnt.get(flight).and_then(Option::as_ref);
+                known.is_some_and(|known| known != content)
+            }
+            Learnt::Number(_) => false,
+        }
     }
 
     /// What would be lost if the tail were learnt from these flights alone.
@@ -69,7 +87,7 @@ impl Salvage {
             identities.map(|identity| (identity.start, identity.flight.clone())).collect();
         match &self.learnt {
             Learnt::Flights(learnt) => {
-                let mut lost = learnt.difference(&at_hand);
+                let mut lost = learnt.keys().filter(|flight| !at_hand.contains(*flight));
                 let (start, flight) = lost.next()?;
                 let more = match lost.count() {
                     0 => String::new(),
@@ -89,16 +107,20 @@ impl Salvage {
 }
 
 /// The flights of a model's ledger.
-fn of_ledger(model: &ModelFile) -> Option<BTreeSet<FlightKey>> {
-    let ledger = &model.learnt.as_ref()?.ledger;
-    ledger.iter().map(|entry| Some((entry.start.parse().ok()?, entry.flight.clone()))).collect()
+fn of_ledger(model: &ModelFile) -> Option<BTreeMap<FlightKey, Option<String>>> {
+    let ledger = model.learnt.as_ref()?.ledger.iter();
+    ledger
+        .map(|entry| {
+            let flight = (entry.start.parse().ok()?, entry.flight.clone());
+            Some((flight, Some(entry.content.clone())))
+        })
+        .collect()
 }
 
-/// The flights of a table of segments, where it has a segment of all that were learnt.
-fn of_segments(bytes: &[u8], learnt: usize) -> Option<BTreeSet<FlightKey>> {
-    let segments = segments_table::read(bytes).ok()?;
+/// The flights of segments, where all that were learnt have one.
+fn of_segments(segments: &[Segment], learnt: usize) -> Option<BTreeMap<FlightKey, Option<String>>> {
     let identities = segments.iter().map(|segment| &segment.identity);
-    let flights: BTreeSet<FlightKey> =
-        identities.map(|identity| (identity.start, identity.flight.clone())).collect();
+    let flights: BTreeMap<FlightKey, Option<String>> =
+        identities.map(|identity| ((identity.start, identity.flight.clone()), None)).collect();
     (flights.len() == learnt).then_some(flights)
 }

@@ -330,3 +330,58 @@ fn a_mistyped_first_report_does_not_choose_the_book_of_its_tail() {
     assert!(diagnosed.stdout.contains("2 reports read, 1 refused"), "{}", diagnosed.stdout);
     assert!(!ran("check").stdout.contains("off the book"));
 }
+
+/// A report that is cut off is no better version of the flight that was learnt whole, whatever is asked for.
+#[test]
+fn the_beginning_of_a_report_does_not_take_the_place_of_the_whole() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
+    adapt(&model, &output, &[report(1), report(2)], &[]).expect(0);
+    let learnt = bytes_below(&output)["segments/SIM-01.csv"].clone();
+    let cut = changed(scratch.path(), 2, "cut.txt", |text| {
+        text.lines().take(30).map(|line| format!("{line}\n")).collect()
+    });
+    adapt(&model, &output, &[report(1), cut], &["--relearn"])
+        .expect(1)
+        .says("of which it is a shorter version");
+    assert_eq!(bytes_below(&output)["segments/SIM-01.csv"], learnt);
+}
+
+/// One report with a mistyped type costs itself on a night without another report of a known tail: new tails are learnt.
+#[test]
+fn a_mistyped_report_does_not_end_a_night_of_new_tails() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
+    let other = model_of_type(scratch.path(), "A320", &fixture("guide.csv"));
+    let more = ["--model", other.to_str().unwrap()];
+    let renamed = |flight: u32, tail: &str, aircraft: &str| {
+        changed(scratch.path(), flight, &format!("{tail}{flight}.txt"), |text| {
+            text.replace("SIM-01", tail).replace("AIRCRAFT global5000", aircraft)
+        })
+    };
+    adapt(&model, &output, &[report(1)], &more).expect(0);
+    let stray = renamed(2, "SIM-01", "AIRCRAFT A320");
+    let new = renamed(3, "SIM-02", "AIRCRAFT A320");
+    adapt(&model, &output, &[stray, new], &more)
+        .expect(1)
+        .says("found aircraft type \"A320\", expected \"global5000\", the type of tail SIM-01");
+    assert!(output.join("models/SIM-02.ron").exists());
+}
+
+/// A new tail does not enter a folder by another law or other trim criteria than its tails have.
+#[test]
+fn a_new_tail_learns_as_the_others_of_its_folder_do() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
+    let new = changed(scratch.path(), 2, "new.txt", |text| text.replace("SIM-01", "SIM-02"));
+    adapt(&model, &output, &[report(1)], &[]).expect(0);
+    let before = bytes_below(&output);
+    adapt(&model, &output, &[new.clone()], &["--law", "paper"])
+        .expect(2)
+        .says("bayes against paper");
+    adapt(&model, &output, &[new.clone()], &["--criteria", "airbus-report-02-short"])
+        .expect(2)
+        .says("trim criteria");
+    assert_eq!(bytes_below(&output), before);
+    adapt(&model, &output, &[new], &[]).expect(0);
+}

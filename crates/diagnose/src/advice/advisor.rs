@@ -5,7 +5,7 @@ use crate::advice::flights::Conditions;
 use crate::library::Library;
 use crate::output::measurement::{Measurement, Separation};
 use crate::search::system::Problem;
-use crate::thresholds::CONFUSED;
+use crate::thresholds::{CONFUSED, DECIDED};
 
 /// Everything that advice is made of.
 pub(crate) struct Advisor<'a> {
@@ -35,10 +35,17 @@ impl<'a> Advisor<'a> {
         Self { distances, library, conditions }
     }
 
-    /// What would tell a column at a size from another effect, whatever the other's hidden parameter; the best first.
+    /// What would tell a column at a size from another effect, whatever the other's hidden parameter; the best first. Nothing of
+    /// what is told apart already. Distances allow for forms other than the library's.
     pub(crate) fn between(&self, column: usize, size: f64, other: usize) -> Vec<Separation> {
         let from = self.library.effects[other].id;
         let others = self.library.effects[other].all_columns();
+        let at = |l: usize| {
+            let variance = self.distances.form_variance(self.library, [column, l], size);
+            (self.distances.squared(column, l, size).0 / variance, variance)
+        };
+        let nearest = others.clone().map(at).min_by(|a, b| a.0.total_cmp(&b.0));
+        let form = nearest.map_or(1.0, |(_, variance)| variance.sqrt());
         let mut all: Vec<Separation> = self
             .distances
             .measurements(self.library, column, others.clone(), size)
@@ -46,8 +53,8 @@ impl<'a> Advisor<'a> {
             .map(|found| Separation {
                 from,
                 measurement: found.measurement,
-                distance_now: found.before,
-                distance_then: found.after,
+                distance_now: found.before / form,
+                distance_then: found.after / form,
                 distance_ordinary_flights: None,
             })
             .collect();
@@ -56,10 +63,11 @@ impl<'a> Advisor<'a> {
         all.extend(flights.map(|found| Separation {
             from,
             measurement: Measurement::Flights(found.flights),
-            distance_now: found.before,
-            distance_then: found.after,
-            distance_ordinary_flights: Some(found.ordinary),
+            distance_now: found.before / form,
+            distance_then: found.after / form,
+            distance_ordinary_flights: Some(found.ordinary / form),
         }));
+        all.retain(|found| found.distance_now < DECIDED);
         best_first(&mut all);
         all
     }

@@ -41,6 +41,23 @@ impl Distances {
 
     /// Effects that this data cannot tell from one at a size, itself first.
     pub(crate) fn confused_with(&self, library: &Library, column: usize, size: f64) -> Vec<usize> {
+        self.nearer_than(library, column, size, |_| 1.0)
+    }
+
+    /// The same where no effect need have the form that the library gives it `[diagnosis.61]`.
+    pub(crate) fn alike_in_form(&self, library: &Library, column: usize, size: f64) -> Vec<usize> {
+        self.nearer_than(library, column, size, |other| {
+            self.form_variance(library, [column, other], size)
+        })
+    }
+
+    fn nearer_than(
+        &self,
+        library: &Library,
+        column: usize,
+        size: f64,
+        variance: impl Fn(usize) -> f64,
+    ) -> Vec<usize> {
         let own = library.columns[column].effect;
         let mut class = vec![own];
         if size * size * self.information(column) < CONFUSED {
@@ -57,7 +74,7 @@ impl Distances {
                 } else {
                     implied.abs() < PLAUSIBLE * effect.typical
                 };
-                squared < CONFUSED && plausible
+                plausible && squared < CONFUSED * variance(l)
             });
             if confused {
                 class.push(index);

@@ -5,10 +5,13 @@ use faer::Mat;
 use crate::hypotheses::design::Design;
 use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::library::Library;
+use crate::library::forms::open_by_law;
 use crate::math::eliminate::integrate_out;
 use crate::math::gram::Gram;
 use crate::priors::SMOOTH_AMPLITUDES;
-use crate::thresholds::{DECK_MEASURED, DETECTION, LEAST_GAIN, LEAST_GAIN_DEVIATIONS};
+use crate::thresholds::{
+    DECK_MEASURED, DETECTION, FORM_DIRECTIONS, LEAST_GAIN, LEAST_GAIN_DEVIATIONS,
+};
 
 /// Distances between effects in the data at hand, nuisance integrated out.
 #[derive(Clone, Debug)]
@@ -52,9 +55,28 @@ impl Distances {
         self.gram[(column, column)].max(0.0)
     }
 
-    /// The size of an effect that would just be detected, in its unit; infinite where the data say nothing.
-    pub(crate) fn smallest_detectable(&self, effect: usize) -> f64 {
-        DETECTION / self.information(self.leading[effect]).sqrt()
+    /// The size of an effect that would just be detected, in its unit; infinite where the data say nothing. A hidden parameter
+    /// has its usual value: where nothing acts, the best supported one is that at which noise happens to look like the effect.
+    pub(crate) fn smallest_detectable(&self, library: &Library, effect: usize) -> f64 {
+        DETECTION / self.information(library.effects[effect].representative).sqrt()
+    }
+
+    /// By how much a squared distance of column `k` at a size from column `l` is to be divided because neither need have the form
+    /// that the library gives it, over what noise leaves open.
+    ///
+    /// ```text
+    /// d'² = d²/(1 + (φ_k² θ² G_kk + φ_l² θ_l² G_ll)/3),   θ_l = θ G_kl/G_ll                           [diagnosis.61]
+    /// ```
+    ///
+    /// A form that is off by a share φ of its size ([`open_by_law`]) may be off in about three directions, of which the one that
+    /// leads from `k` to `l` is one. However large the effects are and however many flights show them, what differs by less than
+    /// that stays alike.
+    pub(crate) fn form_variance(&self, library: &Library, [k, l]: [usize; 2], size: f64) -> f64 {
+        let open = [k, l].map(|column| {
+            let of = &library.columns[column];
+            open_by_law(library.effects[of.effect].id, of.hidden)
+        });
+        form_variance(&self.gram, [k, l], size, open)
     }
 
     /// Squared distance of column `k` at a size from the best-fitting multiple of column `l`, and that multiple.
@@ -155,6 +177,13 @@ pub(crate) fn gains(before: f64, after: f64) -> bool {
     after > LEAST_GAIN * before + LEAST_GAIN_DEVIATIONS
 }
 
+/// [`Distances::form_variance`] in any Gram, of what the laws of both columns leave open.
+fn form_variance(g: &Mat<f64>, [k, l]: [usize; 2], size: f64, open: [f64; 2]) -> f64 {
+    let (_, implied) = squared(g, k, l, size);
+    let square = |column: usize, deviation: f64| deviation * deviation * g[(column, column)];
+    1.0 + (square(k, open[0] * size) + square(l, open[1] * implied)) / FORM_DIRECTIONS
+}
+
 /// [`Distances::squared`] in any Gram.
 pub(crate) fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64) {
     if g[(l, l)] <= 0.0 {
@@ -162,4 +191,26 @@ pub(crate) fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64)
     }
     let slope = g[(k, l)] / g[(l, l)];
     ((size * size * (g[(k, k)] - slope * g[(k, l)])).max(0.0), size * slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: two columns of unit information whose correlation is 0.98, so that d² = θ²·(1 − 0.9604) = 0.0396 θ². At θ = 40
+    /// they are 63 apart where forms are known, and (0.0396·1600)/(1 + 0.0225·(1600 + 0.9604·1600)/3) = 2.58 where both are open by
+    /// 0.15; however large, never more than 3·0.0396/(0.0225·1.9604) = 2.69. One that is known adds nothing.
+    #[test]
+    fn what_a_form_may_be_off_by_stays_alike_at_any_size() {
+        let correlation = |i, j| if i == j { 1.0 } else { 0.98 };
+        let g = Mat::from_fn(2, 2, correlation);
+        let apart = |size: f64, open: [f64; 2]| {
+            squared(&g, 0, 1, size).0 / form_variance(&g, [0, 1], size, open)
+        };
+        assert!((apart(40.0, [0.0, 0.0]) - 63.36).abs() < 1e-9);
+        assert!((apart(40.0, [0.15, 0.15]) - 2.584).abs() < 1e-3);
+        assert!(apart(1e6, [0.15, 0.15]) < 2.694);
+        let one = 63.36 / (1.0 + 0.0225 * 1600.0 / 3.0);
+        assert!((apart(40.0, [0.15, 0.0]) - one).abs() < 1e-9);
+    }
 }

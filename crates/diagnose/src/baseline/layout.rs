@@ -31,6 +31,8 @@ pub(crate) struct NuisanceLayout {
     pub(crate) acceleration: Range<usize>,
     /// What anti-ice bleed changes N2 by.
     pub(crate) bleed: Range<usize>,
+    /// Gain of the tank gauges.
+    pub(crate) gauges: Range<usize>,
     /// Loadings of the drag table's nodes.
     pub(crate) table: Range<usize>,
 }
@@ -42,6 +44,8 @@ pub(crate) struct Uncertain {
     pub(crate) deck: bool,
     /// Whether anti-ice bleed may change N2.
     pub(crate) bleed: bool,
+    /// Whether tank gauges are held against the meters.
+    pub(crate) gauges: bool,
     /// Loadings of the drag table.
     pub(crate) table_rank: usize,
 }
@@ -49,7 +53,7 @@ pub(crate) struct Uncertain {
 impl NuisanceLayout {
     /// Of a baseline alone: what its covariance is over.
     pub(crate) fn of_baseline(remainder: usize, contrasts: usize, drag: usize) -> Self {
-        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0, 0])
+        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0, 0, 0])
     }
 
     /// The same with what is uncertain at any time: chords, acceleration, and what is named.
@@ -63,6 +67,7 @@ impl NuisanceLayout {
             CHORD_COLUMNS,
             1,
             usize::from(uncertain.bleed),
+            usize::from(uncertain.gauges),
             uncertain.table_rank,
         ])
     }
@@ -70,12 +75,12 @@ impl NuisanceLayout {
     /// Without a baseline.
     pub(crate) fn of_design(uncertain: Uncertain) -> Self {
         let deck = if uncertain.deck { DECK_TERMS } else { 0 };
-        let bleed = usize::from(uncertain.bleed);
-        Self::tiled([0, 0, deck, 0, 0, CHORD_COLUMNS, 1, bleed, uncertain.table_rank])
+        let [bleed, gauges] = [uncertain.bleed, uncertain.gauges].map(usize::from);
+        Self::tiled([0, 0, deck, 0, 0, CHORD_COLUMNS, 1, bleed, gauges, uncertain.table_rank])
     }
 
     /// Widths in the order of the fields.
-    fn tiled(widths: [usize; 9]) -> Self {
+    fn tiled(widths: [usize; 10]) -> Self {
         let mut end = 0;
         let [
             remainder,
@@ -86,6 +91,7 @@ impl NuisanceLayout {
             chords,
             acceleration,
             bleed,
+            gauges,
             table,
         ] = widths.map(|width| {
             let range = end..end + width;
@@ -101,6 +107,7 @@ impl NuisanceLayout {
             chords,
             acceleration,
             bleed,
+            gauges,
             table,
         }
     }
@@ -132,6 +139,7 @@ mod tests {
             &layout.chords,
             &layout.acceleration,
             &layout.bleed,
+            &layout.gauges,
             &layout.table,
         ] {
             for column in range.clone() {
@@ -147,14 +155,14 @@ mod tests {
             let baseline = NuisanceLayout::of_baseline(40, contrasts, 7 * contrasts);
             assert_tiled(&baseline);
             assert_eq!(baseline.of_baseline_range(), 0..baseline.len());
-            for (table_rank, bleed) in [(0, false), (285, true)] {
-                let uncertain = Uncertain { bleed, table_rank, ..Uncertain::default() };
+            for (table_rank, any) in [(0, false), (285, true)] {
+                let uncertain = Uncertain { deck: false, bleed: any, gauges: any, table_rank };
                 let design = NuisanceLayout::of_design_with_baseline(&baseline, uncertain);
                 assert_tiled(&design);
                 // What a baseline's covariance is over has the same places in the design.
                 assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
                 assert_eq!(design.standing_effects, baseline.standing_effects);
-                let others = CHORD_COLUMNS + 1 + usize::from(bleed) + table_rank;
+                let others = CHORD_COLUMNS + 1 + 2 * usize::from(any) + table_rank;
                 assert_eq!(design.len(), baseline.len() + others);
             }
         }

@@ -14,7 +14,7 @@ use crate::baseline::layout::{NuisanceLayout, Uncertain};
 use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
-use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION};
+use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION, GAUGE_GAIN_DEVIATION};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::FlightWhitening;
@@ -65,6 +65,7 @@ impl<'a> Design<'a> {
         let uncertain = Uncertain {
             deck: data.channels.n2,
             bleed: data.channels.n2 && data.segments.iter().any(is_bled),
+            gauges: data.flights.iter().any(|flight| flight.gauge.is_some()),
             table_rank: table.map_or(0, TableUncertainty::rank),
         };
         let layout = match baseline {
@@ -180,6 +181,9 @@ impl<'a> Design<'a> {
         if let Some(gauge) = &flight.gauge {
             for (column, signature) in gauge.signatures.iter().enumerate() {
                 matrix[(rows - 1, column)] = signature / gauge.deviation;
+            }
+            for column in self.nuisance_columns(&self.nuisance_parts.layout.gauges) {
+                matrix[(rows - 1, column)] = GAUGE_GAIN_DEVIATION / gauge.deviation;
             }
             matrix[(rows - 1, self.columns - 1)] = gauge.residual / gauge.deviation;
         }

@@ -1,5 +1,7 @@
 //! How far the gap shrinks: choice and fit on four fifths of the flights, judged on the rest.
 
+use flight::effect::HiddenParameter;
+
 use crate::judge::table::{FittedTable, is_table_off};
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
@@ -176,7 +178,7 @@ pub(crate) fn in_sample(
     noise_scale: f64,
     seed: u64,
 ) -> Shrinkage {
-    let choice = Choice { columns: columns.to_vec(), sizes: sizes.to_vec(), table: None };
+    let choice = Choice { columns: vec![columns.to_vec()], sizes: sizes.to_vec(), table: None };
     shrinkage(problem, noise_scale, seed, |_| &choice)
 }
 
@@ -197,7 +199,8 @@ pub(crate) fn nested(
 /// What is added to the model for the flights of a fold.
 #[derive(Clone, Debug, Default)]
 struct Choice {
-    columns: Vec<usize>,
+    /// Columns of its effects; more than one set of them where the other flights do not tell dates apart, each as likely.
+    columns: Vec<Vec<usize>>,
     sizes: Vec<f64>,
     /// A guide's table as the other flights have it.
     table: Option<FittedTable>,
@@ -214,8 +217,8 @@ fn chosen(problem: Problem<'_>, fold: usize, is_certain: bool) -> Option<Choice>
         let named = best.map_or(&[][..], |best| &best.hypothesis.columns);
         let gram = system.gram(Some(fold));
         let table = FittedTable::new(system, library, gram, (&analysis, named))?;
-        let (columns, sizes) = (table.columns.clone(), table.sizes.clone());
-        return Some(Choice { columns, sizes, table: Some(table) });
+        let columns = dates_alike(problem, fold, &table.columns);
+        return Some(Choice { columns, sizes: table.sizes.clone(), table: Some(table) });
     }
     let Analysis { scorer, backgrounds, space, models, clean, .. } = analysis;
     // The verdict's own rule: where nothing at all is improbable, or the gap too large for it, the best named set, be it no more
@@ -228,7 +231,41 @@ fn chosen(problem: Problem<'_>, fold: usize, is_certain: bool) -> Option<Choice>
     let mut found = refine(problem, &scorer, &space, &[(best, at)], Some(fold));
     let found = found.pop().flatten();
     let sizes = found.map_or_else(|| best.sizes.clone(), |found| found.scored.sizes);
-    Some(Choice { columns: best.hypothesis.columns.clone(), sizes, table: None })
+    let columns = dates_alike(problem, fold, &best.hypothesis.columns);
+    Some(Choice { columns, sizes, table: None })
+}
+
+/// Columns of a set of effects, and the same with every other date of a step that the flights outside a fold do not tell from its
+/// own: a flight that was left out may lie on either side of it.
+fn dates_alike(problem: Problem<'_>, fold: usize, columns: &[usize]) -> Vec<Vec<usize>> {
+    let Problem { system, library, .. } = problem;
+    let data = system.data;
+    let flights = data.flights.iter().enumerate().filter(|(flight, _)| fold_of(*flight) != fold);
+    let kept_s: Vec<f64> = flights
+        .filter_map(|(_, flight)| Some(data.segments.get(flight.segments.start)?.point.date_s))
+        .collect();
+    let step_of = |column: usize| match library.columns[column].hidden {
+        HiddenParameter::Step { from_s, target } => Some((from_s, target)),
+        _ => None,
+    };
+    let mut all = vec![columns.to_vec()];
+    for (place, &column) in columns.iter().enumerate() {
+        let Some((from_s, target)) = step_of(column) else { continue };
+        let are_alike = |other: &usize| {
+            step_of(*other).is_some_and(|(other_s, of)| {
+                let between = from_s.min(other_s)..from_s.max(other_s);
+                of == target && !kept_s.iter().any(|date_s| between.contains(date_s))
+            })
+        };
+        let effect = &library.effects[library.columns[column].effect];
+        let others = effect.all_columns().filter(|other| *other != column).filter(are_alike);
+        all.extend(others.map(|other| {
+            let mut with_other = columns.to_vec();
+            with_other[place] = other;
+            with_other
+        }));
+    }
+    all
 }
 
 fn shrinkage<'c>(
@@ -238,21 +275,27 @@ fn shrinkage<'c>(
     choice: impl Fn(usize) -> &'c Choice,
 ) -> Shrinkage {
     let Problem { system, model, library } = problem;
-    let trials: Vec<_> = (0..CLOSURE_FOLDS)
+    let trials: Vec<Vec<_>> = (0..CLOSURE_FOLDS)
         .map(|fold| {
             let Choice { columns, sizes, .. } = choice(fold);
-            model.trial(&effects_of(library, columns, sizes))
+            let trial = |columns: &Vec<usize>| model.trial(&effects_of(library, columns, sizes));
+            columns.iter().map(trial).collect()
         })
         .collect();
     Shrinkage::of_changes(system, noise_scale, seed, |flight, segment| {
         let fold = fold_of(flight);
         let row = &system.data.segments[segment];
         let predictor = &system.data.predictor;
-        let closed = model
-            .response_at(&row.known, &trials[fold])
-            .map_or(0.0, |with| predictor.predict(&with)[0] - predictor.predict(&row.response)[0]);
+        let closed: f64 = trials[fold]
+            .iter()
+            .map(|trial| {
+                model.response_at(&row.known, trial).map_or(0.0, |with| {
+                    predictor.predict(&with)[0] - predictor.predict(&row.response)[0]
+                })
+            })
+            .sum();
         let of_table = choice(fold).table.as_ref().map_or(0.0, |table| table.drag_at(system, row));
-        closed + of_table * row.drag_over_thrust
+        closed / trials[fold].len().max(1) as f64 + of_table * row.drag_over_thrust
     })
 }
 

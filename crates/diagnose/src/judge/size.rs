@@ -2,11 +2,9 @@
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use flight::effect::{EffectGroup, EffectId, HiddenParameter, StepTarget};
 use statrs::function::erf::erfc;
 
 use crate::output::Magnitude;
-use crate::priors::FORM_ERROR;
 
 /// Steps at most: bisections alone would settle in 47.
 const STEPS: usize = 120;
@@ -27,26 +25,13 @@ pub(crate) struct SizeBelief {
 /// Σ p_h Φ((x − θ_h)/√(σ_h² + (φ θ_h)²)) / Σ p_h = 0.025, 0.975                                    [diagnosis.51]
 /// ```
 ///
-/// φ is what the law of the effect leaves open ([`open_by_law`]).
+/// φ is what the law of the effect leaves open ([`crate::library::forms::open_by_law`]).
 pub(crate) fn magnitude(value: f64, beliefs: &[SizeBelief], open_by_law: f64) -> Magnitude {
     let widened: Vec<SizeBelief> = beliefs
         .iter()
         .map(|of| SizeBelief { deviation: of.deviation.hypot(open_by_law * of.size), ..*of })
         .collect();
     Magnitude { value, ci95: [0.025, 0.975].map(|share| quantile(&widened, share)) }
-}
-
-/// Standard deviation, over the size, of what an effect's law leaves open about it: its form, and how strongly it acts where
-/// the model stands (the share of the drag without lift, how TSFC depends on thrust). None where the size is a factor on what
-/// burns or on what is recorded, or physics states it.
-pub(crate) fn open_by_law(id: EffectId, hidden: HiddenParameter) -> f64 {
-    let on_drag = matches!(hidden, HiddenParameter::Step { target: StepTarget::Drag, .. });
-    match (id, id.entry().group) {
-        (EffectId::TsfcFactor | EffectId::TsfcEngine(_), _) => 0.0,
-        (EffectId::StepChange, _) if !on_drag => 0.0,
-        (_, EffectGroup::Airframe | EffectGroup::Engine | EffectGroup::Event) => FORM_ERROR,
-        (_, EffectGroup::Mass | EffectGroup::Sensor | EffectGroup::Environment) => 0.0,
-    }
 }
 
 /// Where a mixture of normals has a share below it: Newton's method, with bisection where its step leaves the bracket or is more
@@ -138,23 +123,6 @@ mod tests {
                     .sum();
                 assert!((below - share).abs() < 1e-9, "{mixture:?} {share}: {x} {below}");
             }
-        }
-    }
-
-    #[test]
-    fn what_is_a_factor_has_no_law_of_its_own() {
-        let step = |target| HiddenParameter::Step { from_s: 0.0, target };
-        let none = HiddenParameter::None;
-        for (id, hidden, expected) in [
-            (EffectId::TsfcEngine(2), none, 0.0),
-            (EffectId::FuelFlowGain, none, 0.0),
-            (EffectId::StepChange, step(StepTarget::FuelFlow), 0.0),
-            (EffectId::StepChange, step(StepTarget::Drag), FORM_ERROR),
-            (EffectId::ReynoldsNumber, none, FORM_ERROR),
-            (EffectId::AntiIceBleed, none, FORM_ERROR),
-            (EffectId::LocalGravity, none, 0.0),
-        ] {
-            assert!((open_by_law(id, hidden) - expected).abs() < 1e-15, "{id}");
         }
     }
 }

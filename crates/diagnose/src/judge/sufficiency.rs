@@ -63,6 +63,7 @@ pub(crate) const fn insufficient(
         addition: None,
         detectable: vec![],
         outside: OutsideLibrary {
+            looked_for_all: true,
             probability: 0.0,
             variable: None,
             acts_on: None,

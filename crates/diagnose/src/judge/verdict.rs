@@ -251,13 +251,24 @@ fn class_and_credible(
     posteriors: &[&Posterior],
 ) -> [Vec<EffectId>; 2] {
     let &Findings { library, distances, .. } = findings;
-    let class = class_of(distances, library, top);
+    let mut class = class_of(distances, library, top);
+    if let Some((column, size)) = top.column_and_size() {
+        let alike = distances.alike_in_form(library, column, size).into_iter();
+        for id in alike.map(|effect| library.effects[effect].id) {
+            if !class.contains(&id) {
+                class.push(id);
+            }
+        }
+    }
+    // What acts with it is what it is, and no other name of it.
+    let together = set_of(findings.analysis, library, top);
     let mut others = Vec::new();
     // What only the prior sizes decide is open as well.
     let by_size = posteriors.iter().copied().filter(|p| p.flat * SIZE_ALONE >= top.flat);
     for posterior in credible(posteriors).chain(by_size) {
         let id = id_of(library, posterior.effect);
-        if !class.contains(&id) && !others.contains(&id) {
+        let is_companion = together.contains(&id);
+        if !is_companion && !class.contains(&id) && !others.contains(&id) {
             others.push(id);
         }
     }

@@ -10,6 +10,7 @@ use crate::hypotheses::backgrounds::{Background, TableBelief};
 use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
 use crate::library::Library;
 use crate::math::eliminate::Changed;
+use crate::priors::LARGEST_OF_TWO;
 use crate::residuals::signatures::Difference;
 use crate::residuals::whiten::whiten_within_segment;
 use crate::search::folds::fold_of;
@@ -18,7 +19,10 @@ use crate::search::system::{EliminatedGrams, Problem, SmoothTerms, WhitenedSyste
 use crate::signals::channels::MAXIMUM_CHANNELS;
 
 /// Largest number of re-linearisations of a model.
-const STEPS: usize = 3;
+const STEPS: usize = 6;
+/// A model is linearised no farther out than this times the typical size: a law that is nearly flat where it begins, as that of a drag
+/// rise, throws its first estimate far beyond, from where each step takes back a little.
+const FARTHEST: f64 = LARGEST_OF_TWO;
 /// A step shorter than this share of the typical size ends the iteration.
 const CONVERGED: f64 = 0.02;
 
@@ -64,7 +68,10 @@ pub(crate) fn refine(
     let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
     let mut runs: Vec<Option<Relinearisation<'_>>> = starts
         .iter()
-        .map(|&(start, at)| Some(Relinearisation { start, at, sizes: start.sizes.clone() }))
+        .map(|&(start, at)| {
+            let sizes = within_reach(library, &start.hypothesis.columns, &start.sizes);
+            Some(Relinearisation { start, at, sizes })
+        })
         .collect();
     let mut refined: Vec<Option<Relinearised>> = starts.iter().map(|_| None).collect();
     let rescoring = Rescoring { library, scorer, space };
@@ -103,7 +110,7 @@ pub(crate) fn refine(
             if converged {
                 finished.push(place);
             } else {
-                run.sizes = found;
+                run.sizes = within_reach(library, columns, &found);
             }
         }
         if smooth_terms == SmoothTerms::Kept && !finished.is_empty() {
@@ -118,6 +125,14 @@ pub(crate) fn refine(
         }
     }
     refined
+}
+
+/// Sizes at which a model may be linearised.
+fn within_reach(library: &Library, columns: &[usize], sizes: &[f64]) -> Vec<f64> {
+    let farthest =
+        |column: usize| FARTHEST * library.effects[library.columns[column].effect].typical;
+    let sizes = columns.iter().zip(sizes);
+    sizes.map(|(&column, size)| size.clamp(-farthest(column), farthest(column))).collect()
 }
 
 /// What a relinearised hypothesis is scored with.

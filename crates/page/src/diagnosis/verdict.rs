@@ -276,6 +276,7 @@ mod tests {
             addition: None,
             detectable: Vec::new(),
             outside: OutsideLibrary {
+                looked_for_all: true,
                 probability: 0.0,
                 variable: None,
                 acts_on: None,

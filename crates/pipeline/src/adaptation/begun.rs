@@ -53,6 +53,22 @@ impl Start<'_> {
         Ok(ModelFile { learnt: Some(learnt), ..self.model.clone() })
     }
 
+    /// What another tail of the same folder was begun with otherwise, that all tails of a folder have in common: law and trim criteria.
+    pub fn difference_of_folder(&self, stored: &ModelFile) -> Option<(&'static str, String)> {
+        let law = match self.law {
+            LawChoice::Bayes(_) => "bayes",
+            LawChoice::Paper(_) => "paper",
+        };
+        let (known_law, known_criteria) = stored.learns_by()?;
+        if known_law != law {
+            return Some(("law", format!("{known_law} against {law}")));
+        }
+        let differs = known_criteria != self.criteria;
+        differs.then(|| {
+            ("set of trim criteria", format!("{known_criteria} against {}", self.criteria))
+        })
+    }
+
     /// What a stored model of the tail was begun with otherwise, and both values; `None` where it was begun alike.
     ///
     /// # Errors

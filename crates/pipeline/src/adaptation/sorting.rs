@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use flight::Timestamp;
 
 use crate::known_flights::{KnownFlights, Relation};
+use crate::learnt_flights::KnownFlight;
 use crate::reading::{FlightRead, RefusedReport};
 
 /// What may be done with a report that contradicts a known flight.
@@ -111,26 +112,51 @@ impl Sorting {
 
     /// Why a flight that contradicts known ones does not take their place; `None` where it does.
     fn objection(&self, relations: &[Relation], flight: &FlightRead) -> Option<String> {
-        let stored =
-            |relation: &Relation| relation.known().is_some_and(|index| index < self.stored);
+        let known = self.known.flights();
+        let of = |relation: &Relation| relation.known().map(|index| &known[index]);
         let told = |relation: Relation| self.known.objection(relation, flight).unwrap_or_default();
-        if let Some(relation) = relations.iter().find(|relation| !stored(relation)) {
-            return Some(told(*relation));
+        let is_stored =
+            |relation: &&Relation| relation.known().is_some_and(|index| index < self.stored);
+        if let Some(relation) = relations.iter().find(|relation| !is_stored(relation)) {
+            let other = of(relation).and_then(|known| self.path_of(known));
+            return Some(match other {
+                Some(other) => format!("{} (the other report is {other})", told(*relation)),
+                None => told(*relation),
+            });
+        }
+        let is_at_hand = |relation: &&Relation| {
+            of(relation)
+                .is_some_and(|one| self.at_hand.contains(&(one.start, one.entry.flight.clone())))
+        };
+        if let Some(at_hand) = relations.iter().find(is_at_hand) {
+            return Some(
+                told(*at_hand)
+                    + ", whose report is among these as it was learnt: leave one of the two out",
+            );
         }
         let first = *relations.first()?;
-        if self.contradictions == Contradictions::Refuse {
-            return Some(told(first) + " (--relearn learns this one in its place)");
+        if let (Relation::OtherContent(_), Some(known)) = (first, of(&first)) {
+            let samples = flight.reduced.samples as u64;
+            if samples < known.entry.samples && flight.end < known.end {
+                return Some(format!(
+                    "{}, of which it is a shorter version: {samples} samples where {} were learnt (`cruisefit forget` makes room for it)",
+                    told(first),
+                    known.entry.samples
+                ));
+            }
         }
-        let known = self.known.flights();
-        let is_at_hand = |relation: &&Relation| {
-            let flight = relation.known().map(|index| &known[index]);
-            flight.is_some_and(|one| self.at_hand.contains(&(one.start, one.entry.flight.clone())))
+        (self.contradictions == Contradictions::Refuse)
+            .then(|| told(first) + " (--relearn learns this one in its place)")
+    }
+
+    /// The report of a flight that this run has read.
+    fn path_of(&self, known: &KnownFlight) -> Option<String> {
+        let is_it = |one: &FlightRead| {
+            one.reduced.identity.start == known.start
+                && one.reduced.identity.flight == known.entry.flight
         };
-        let at_hand = relations.iter().find(is_at_hand)?;
-        Some(
-            told(*at_hand)
-                + ", whose report is among these as it was learnt: leave one of the two out",
-        )
+        let found = self.new.iter().find(|(one, _)| is_it(one));
+        found.map(|(one, _)| one.path.display().to_string())
     }
 
     fn accept_in_place_of(&mut self, flight: FlightRead, relations: &[Relation]) {
@@ -150,16 +176,10 @@ impl Sorting {
     fn copy(&mut self, flight: &FlightRead, index: usize) {
         self.already_known += 1;
         self.copies += 1;
-        let identity = &self.known.flights()[index];
-        let original = self.new.iter().find(|(one, _)| {
-            one.reduced.identity.start == identity.start
-                && one.reduced.identity.flight == identity.entry.flight
-        });
         if self.first_copy.is_none()
-            && let Some((original, _)) = original
+            && let Some(original) = self.path_of(&self.known.flights()[index])
         {
-            self.first_copy =
-                Some((flight.path.display().to_string(), original.path.display().to_string()));
+            self.first_copy = Some((flight.path.display().to_string(), original));
         }
     }
 

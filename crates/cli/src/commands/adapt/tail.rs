@@ -102,12 +102,21 @@ impl Run<'_> {
         let Known { flights: known, new, refused, learnt_before, copies, stored } = found;
         self.bar.advance(paths.len() - new.len());
         let reading = self.read(tail, start, &new, buffers, side_by_side);
-        let learnt = stored.as_ref().map_or(&[][..], |stored| &stored.segments);
+        let learnt = match (&stored, &damaged) {
+            (Some(stored), _) => &stored.segments[..],
+            (None, Some((_, left))) => &left.segments,
+            (None, None) => &[],
+        };
         let reading = self.plausible(reading, start, learnt);
         if let Some((failure, left)) = damaged {
             if let Some(lost) = left.lost(&reading.flights) {
                 self.bar.half(new.len());
-                return Ok(self.refuse(tail, &paths, &format!("{failure}; {lost}")));
+                let mut outcome = self.refuse(tail, &paths, &format!("{failure}; {lost}"));
+                for refusal in reading.refused {
+                    outcome.refused.retain(|one| one.path != refusal.path);
+                    outcome.refused.push(refusal);
+                }
+                return Ok(outcome);
             }
             tracing::warn!("{failure}; tail {tail} is learnt anew from its reports");
         }

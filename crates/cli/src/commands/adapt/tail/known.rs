@@ -66,7 +66,17 @@ impl Run<'_> {
         };
         let Some(left) = self.folder.salvage(tail)? else { return Ok(None) };
         self.keeps_remainder(left.model.as_ref())?;
-        let (new, copies) = without_copies(heads, buffers);
+        let (mut new, copies) = without_copies(heads, buffers);
+        // Of versions of one flight that which was learnt comes first, and the others are refused for it.
+        new.sort_by_cached_key(|head| {
+            let flight = (head.start, head.flight.to_string());
+            let content = match &head.read {
+                Some(read) => Some(read.content.clone()),
+                None => buffers.content_of(&head.path).ok(),
+            };
+            let is_other = content.is_some_and(|content| left.is_other_version(&flight, &content));
+            (flight, is_other)
+        });
         Ok(Some((Known { new, copies, ..Known::default() }, left)))
     }
 
