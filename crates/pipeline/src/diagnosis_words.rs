@@ -25,8 +25,11 @@ pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What a verdict of no gap means: noise, or more than noise that is no effect.
 pub fn silent_words(diagnosis: &Diagnosis) -> &'static str {
+    /// Less probable than that by noise alone, a gap of few flights exceeds it, however little is left in the mean of all; our
+    /// choice.
+    const BEYOND_NOISE: f64 = 0.001;
     let gap = &diagnosis.gap;
-    if gap.rms_ci95[0] > gap.noise_floor_rms_percent {
+    if gap.rms_ci95[0] > gap.noise_floor_rms_percent || gap.p_value < BEYOND_NOISE {
         "No effect is seen: what exceeds the noise is too small, too different from flight to flight, or within what the model leaves open."
     } else {
         "Nothing beyond the noise: the model fits these flights."
