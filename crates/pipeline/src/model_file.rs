@@ -80,6 +80,21 @@ pub struct LawSettings {
 }
 
 impl LawSettings {
+    /// The settings that differ from others, each as the file has it: "`half_life_days: None` against `half_life_days: Some(200.0)`".
+    fn told_against(&self, others: &Self) -> String {
+        let lines = |settings: &Self| -> Vec<String> {
+            let text = ron::ser::to_string_pretty(settings, ron::ser::PrettyConfig::new());
+            let text = text.unwrap_or_default();
+            text.lines().map(|line| line.trim().trim_end_matches(',').to_owned()).collect()
+        };
+        let (own, others) = (lines(self), lines(others));
+        let only = |of: &[String], than: &[String]| {
+            let told = of.iter().filter(|line| !than.contains(line)).cloned();
+            told.collect::<Vec<_>>().join(", ")
+        };
+        format!("{} against {}", only(&own, &others), only(&others, &own))
+    }
+
     /// The settings that the laws were published with.
     pub const fn published() -> Self {
         Self {
@@ -332,7 +347,7 @@ impl ModelFile {
             ));
         }
         if self.settings != other.settings {
-            return Some(("setting", format!("{:?} against {:?}", other.settings, self.settings)));
+            return Some(("setting", other.settings.told_against(&self.settings)));
         }
         None
     }
