@@ -20,7 +20,7 @@ use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::table::is_table_off;
 use crate::judge::verdict::{Findings, advisor, level_like, named_gap, verdict};
 use crate::library::Library;
-use crate::library::dates::DateGrid;
+use crate::library::dates::{DateGrid, is_dated};
 use crate::output::addition::Addition;
 use crate::output::form::{ActsOn, FoundForm};
 use crate::output::note::{LeftOutReason, Note};
@@ -415,7 +415,11 @@ fn detectable(
             Detectable {
                 effect: id(effect),
                 smallest: (smallest <= largest).then_some(smallest),
-                hidden: library.columns[library.effects[effect].representative].hidden,
+                hidden: if is_dated(id(effect)) {
+                    HiddenParameter::None
+                } else {
+                    library.columns[library.effects[effect].representative].hidden
+                },
                 class: class.map_or_else(Vec::new, |class| class.iter().map(|&e| id(e)).collect()),
                 nearest_other: distances.nearest_other(library, effect),
                 nearest_pair: distances.nearest_pair(library, effect),

@@ -186,7 +186,7 @@ pub struct Detectable {
     /// Smallest size, in the effect's unit, seen with about 60 % probability; `None` where it is larger than is believed in of any
     /// aircraft.
     pub smallest: Option<f64>,
-    /// Its hidden parameter at that size: the usual value.
+    /// Its hidden parameter at that size, the usual value; none of an effect that has a date, which is in the middle of the flights.
     pub hidden: HiddenParameter,
     /// Effects that this data cannot tell from it at typical sizes, itself included.
     pub class: Vec<EffectId>,

@@ -154,9 +154,6 @@ deciding_numbers! {
         FLIGHT_SPLIT_DEVIATION: f64 = 0.01, "",
             "standard deviation from flight to flight of ln(Wf1/Wf2)",
             OurChoice "Engines of one aircraft are not set exactly alike; how far apart is a guess.";
-        GAUGE_GAIN_DEVIATION: f64 = 0.005, "of what is burnt",
-            "prior standard deviation of what tank gauges read too much of every burn against exact meters",
-            OurChoice "Gauges are calibrated too: what all flights of an aircraft show is no better known than that.";
         GAUGE_DEVIATION_KG: f64 = 25.0, "kg",
             "standard deviation of the difference of two gauge readings",
             OurChoice "A fuel-quantity indication to about 1 % of a business jet's tanks.";

@@ -14,12 +14,13 @@ use crate::baseline::layout::{NuisanceLayout, Uncertain};
 use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
-use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION, GAUGE_GAIN_DEVIATION};
+use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::FlightWhitening;
 use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::signals::table_uncertainty::TableUncertainty;
+use crate::thresholds::MEASURED_BURN_PERCENT;
 
 pub(crate) use blocks::{AGNOSTIC_VARIABLES, Acts, Block};
 
@@ -183,7 +184,7 @@ impl<'a> Design<'a> {
                 matrix[(rows - 1, column)] = signature / gauge.deviation;
             }
             for column in self.nuisance_columns(&self.nuisance_parts.layout.gauges) {
-                matrix[(rows - 1, column)] = GAUGE_GAIN_DEVIATION / gauge.deviation;
+                matrix[(rows - 1, column)] = 0.01 * MEASURED_BURN_PERCENT / gauge.deviation;
             }
             matrix[(rows - 1, self.columns - 1)] = gauge.residual / gauge.deviation;
         }
