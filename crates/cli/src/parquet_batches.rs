@@ -20,10 +20,12 @@ use parquet::schema::types::ColumnDescriptor;
 use present::Present;
 use rayon::prelude::*;
 use report::mapping::{Batch, BatchColumn, Source};
-use shared_file::SharedFile;
+pub(crate) use shared_file::SharedFile;
 
 /// Rows of a batch: enough that the work on its ends does not count, few enough that several fit into little memory.
 const ROWS_AT_ONCE: usize = 1 << 14;
+/// Most digits behind a decimal point: as many as a power of ten can have that double precision holds.
+const MOST_DECIMALS: u8 = 22;
 
 /// A Parquet file as a recording.
 ///
@@ -45,6 +47,26 @@ pub(crate) fn source(file: File) -> Result<Source<'static>, String> {
 pub(crate) fn csv_of_file(path: &Path, most_bytes: usize) -> Result<Vec<u8>, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     csv_of(file, most_bytes).map_err(|error| error.to_string())
+}
+
+/// The names of the columns of a Parquet file.
+///
+/// # Errors
+/// Why it is not read.
+pub(crate) fn names_of_file(path: &Path) -> Result<Vec<String>, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    Table::open(file).map(|table| table.names()).map_err(|error| error.to_string())
+}
+
+/// Columns of a Parquet file that are of a type which is not read.
+///
+/// # Errors
+/// Why it is not read.
+pub(crate) fn unread_of_file(path: &Path) -> Result<Vec<String>, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let table = Table::open(file).map_err(|error| error.to_string())?;
+    let mut names = table.names();
+    Ok(table.unread().into_iter().map(|place| std::mem::take(&mut names[place])).collect())
 }
 
 fn csv_of(file: File, most_bytes: usize) -> Result<Vec<u8>, ParquetError> {
@@ -97,8 +119,8 @@ struct Table {
 /// What a column's cells become.
 #[derive(Clone, Copy)]
 enum Kind {
-    /// Times this.
-    Number(f64),
+    Number,
+    Whole(Whole),
     /// With nanoseconds for each count.
     Instant(i64),
     /// Likewise, on a clock of which the file does not say where it is.
@@ -108,6 +130,15 @@ enum Kind {
     /// Time of day, with nanoseconds for each count.
     Time(i64),
     Text,
+}
+
+/// How whole numbers are written.
+#[derive(Clone, Copy)]
+struct Whole {
+    /// Digits behind the decimal point.
+    decimals: u8,
+    /// Whether the largest bit counts, and is no sign.
+    is_unsigned: bool,
 }
 
 /// A column of the group that is being read.
@@ -203,7 +234,7 @@ impl Table {
     }
 }
 
-/// What the cells of a column become; `None` for what is not read: lists, maps, structures, decimals of more than 18 digits.
+/// What the cells of a column become; `None` for what is not read: lists, maps, structures, bytes of a fixed length.
 fn kind_of(column: &ColumnDescriptor) -> Option<Kind> {
     if column.path().parts().len() != 1 || column.max_rep_level() > 0 || column.max_def_level() > 1
     {
@@ -226,16 +257,27 @@ fn kind_of(column: &ColumnDescriptor) -> Option<Kind> {
         _ if converted == ConvertedType::TIME_MILLIS => Some(Kind::Time(1_000_000)),
         _ if converted == ConvertedType::TIME_MICROS => Some(Kind::Time(1_000)),
         _ if converted == ConvertedType::DATE => Some(Kind::Date),
-        _ if converted == ConvertedType::DECIMAL && is_integer => {
-            Some(Kind::Number(0.1_f64.powi(column.type_scale())))
+        _ if converted == ConvertedType::DECIMAL => {
+            let decimals = u8::try_from(column.type_scale()).ok();
+            let decimals = decimals.filter(|decimals| *decimals <= MOST_DECIMALS)?;
+            Some(Kind::Whole(Whole { decimals, is_unsigned: false }))
         }
         (_, PhysicalType::BOOLEAN | PhysicalType::FLOAT | PhysicalType::DOUBLE) => {
-            Some(Kind::Number(1.0))
+            Some(Kind::Number)
         }
-        _ if is_integer => Some(Kind::Number(1.0)),
-        (_, PhysicalType::BYTE_ARRAY) if converted != ConvertedType::DECIMAL => Some(Kind::Text),
+        _ if is_integer => {
+            // Narrower ones never have the bit of the sign.
+            let is_unsigned = matches!(converted, ConvertedType::UINT_32 | ConvertedType::UINT_64);
+            Some(Kind::Whole(Whole { decimals: 0, is_unsigned }))
+        }
+        (_, PhysicalType::BYTE_ARRAY) => Some(Kind::Text),
         _ => None,
     }
+}
+
+/// A power of ten: up to 10^22 double precision holds it exactly.
+fn power_of_ten(decimals: u8) -> f64 {
+    10_f64.powi(i32::from(decimals))
 }
 
 const fn nanoseconds(unit: TimeUnit) -> i64 {

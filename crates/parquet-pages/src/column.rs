@@ -13,9 +13,9 @@ pub enum Form {
     Double,
     /// A number of single precision.
     Float,
-    /// A whole number of 32 bits, times this.
+    /// A whole number of 32 bits, divided by this.
     Int32(f64),
-    /// A whole number of 64 bits, times this.
+    /// A whole number of 64 bits, divided by this. One that double precision does not hold to the last digit is an error.
     Int64(f64),
     /// A whole number of 64 bits, of so many nanoseconds each.
     Nanoseconds(i64),
@@ -70,6 +70,9 @@ const PLAIN: u32 = 0;
 const PLAIN_DICTIONARY: u32 = 2;
 const RUNS: u32 = 3;
 const RUNS_DICTIONARY: u32 = 8;
+
+/// Up to here every whole number is one of double precision: 2^53.
+const LARGEST_EXACT: i64 = 1 << f64::MANTISSA_DIGITS;
 
 impl Column {
     /// Of values of this form; with `has_levels`, of a column that could lack some.
@@ -149,12 +152,13 @@ impl Column {
             }
             Form::Nanoseconds(each) => {
                 let mut entries = Vec::new();
-                append_nanoseconds(first(&self.page, count)?, each, &mut entries)?;
+                let bytes = first(&self.page, count * self.form.bytes())?;
+                append_nanoseconds(bytes, each, &mut entries)?;
                 Entries::Nanoseconds(Dictionary::new(entries))
             }
             form => {
                 let mut entries = Vec::new();
-                append_numbers(form, first(&self.page, count * form.bytes())?, &mut entries);
+                append_numbers(form, first(&self.page, count * form.bytes())?, &mut entries)?;
                 self.is_finite = entries.iter().all(|value| value.is_finite());
                 Entries::Numbers(Dictionary::new(entries))
             }
@@ -194,7 +198,7 @@ impl Column {
             _ if count == 0 => {}
             (Way::Plain(at), Values::Numbers(values), _) => {
                 let bytes = plain(page, at, count * self.form.bytes())?;
-                append_numbers(self.form, bytes, values);
+                append_numbers(self.form, bytes, values)?;
             }
             (Way::Plain(at), Values::Nanoseconds(values), _) => {
                 let Form::Nanoseconds(each) = self.form else { return Err(Damage::EndsEarly) };
@@ -238,7 +242,7 @@ fn plain<'p>(page: &'p [u8], at: &mut usize, bytes: usize) -> Result<&'p [u8], D
     Ok(found)
 }
 
-fn append_numbers(form: Form, bytes: &[u8], values: &mut Vec<f64>) {
+fn append_numbers(form: Form, bytes: &[u8], values: &mut Vec<f64>) -> Result<(), Damage> {
     let (eights, _) = bytes.as_chunks::<8>();
     let (fours, _) = bytes.as_chunks::<4>();
     match form {
@@ -246,25 +250,32 @@ fn append_numbers(form: Form, bytes: &[u8], values: &mut Vec<f64>) {
         Form::Float => {
             values.extend(fours.iter().map(|four| f64::from(f32::from_le_bytes(*four))));
         }
-        Form::Int32(factor) => {
-            values.extend(fours.iter().map(|four| f64::from(i32::from_le_bytes(*four)) * factor));
+        Form::Int32(by) => {
+            values.extend(fours.iter().map(|four| f64::from(i32::from_le_bytes(*four)) / by));
         }
-        #[expect(clippy::cast_precision_loss, reason = "counts of recorders are below 2^53")]
-        Form::Int64(factor) => {
-            values.extend(eights.iter().map(|eight| i64::from_le_bytes(*eight) as f64 * factor));
+        #[expect(clippy::cast_precision_loss, reason = "those above 2^53 are refused")]
+        Form::Int64(by) => {
+            refuse_beyond(LARGEST_EXACT, eights, "whole numbers")?;
+            values.extend(eights.iter().map(|eight| i64::from_le_bytes(*eight) as f64 / by));
         }
         Form::Nanoseconds(_) | Form::Text => {}
     }
+    Ok(())
+}
+
+/// Refuses whole numbers of which one is farther from zero than this.
+fn refuse_beyond(farthest: i64, eights: &[[u8; 8]], what: &'static str) -> Result<(), Damage> {
+    // Counted, without a way out of the loop: nearly always there is none.
+    let far = |count: i64| u64::from(!(-farthest..=farthest).contains(&count));
+    if eights.iter().map(|eight| far(i64::from_le_bytes(*eight))).sum::<u64>() > 0 {
+        return Err(Damage::Otherwise(what));
+    }
+    Ok(())
 }
 
 fn append_nanoseconds(bytes: &[u8], each: i64, values: &mut Vec<i64>) -> Result<(), Damage> {
     let (eights, _) = bytes.as_chunks::<8>();
-    // Counted, without a way out of the loop: nearly always each is one that can be counted in nanoseconds.
-    let farthest = i64::MAX / each.max(1);
-    let far = |count: i64| u64::from(!(-farthest..=farthest).contains(&count));
-    if eights.iter().map(|eight| far(i64::from_le_bytes(*eight))).sum::<u64>() > 0 {
-        return Err(Damage::Otherwise("instants"));
-    }
+    refuse_beyond(i64::MAX / each.max(1), eights, "instants")?;
     values.extend(eights.iter().map(|eight| i64::from_le_bytes(*eight).wrapping_mul(each)));
     Ok(())
 }
@@ -322,9 +333,15 @@ mod tests {
         let singles = [0.5_f32, -2.25].map(f32::to_le_bytes).concat();
         assert_eq!(plain(Form::Float, &singles, 2), Values::Numbers(vec![0.5, -2.25]));
         let counts = [7_i32, -4].map(i32::to_le_bytes).concat();
-        assert_eq!(plain(Form::Int32(0.5), &counts, 2), Values::Numbers(vec![3.5, -2.0]));
+        assert_eq!(plain(Form::Int32(2.0), &counts, 2), Values::Numbers(vec![3.5, -2.0]));
         let counts = [7_i64, -4].map(i64::to_le_bytes).concat();
         assert_eq!(plain(Form::Int64(1.0), &counts, 2), Values::Numbers(vec![7.0, -4.0]));
+        // 123.45 by two digits: multiplied by 0.01 it is 123.45000000000002.
+        let decimal = plain(Form::Int64(100.0), &12_345_i64.to_le_bytes(), 1);
+        assert_eq!(decimal, Values::Numbers(vec![123.45]));
+        let long = ((1_i64 << 53) + 1).to_le_bytes();
+        let refused = read(&mut Column::new(Form::Int64(1.0), false), &long, data(1, PLAIN));
+        assert!(matches!(refused, Err(Damage::Otherwise(_))));
         let instants = plain(Form::Nanoseconds(1000), &counts, 2);
         assert_eq!(instants, Values::Nanoseconds(vec![7000, -4000]));
     }

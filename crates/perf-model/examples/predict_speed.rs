@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let model = initial_model(&Aircraft::from_ron(&aircraft)?, &Guide::from_csv(&guide)?)?.model;
     let points = FlightPoints::from_csv(&points)?;
-    let points: Vec<FlightPoint> = points.rows().iter().map(|row| row.point).collect();
+    let points: Vec<FlightPoint> =
+        points.rows().iter().filter_map(|row| row.point.clone().ok()).collect();
     let column = |of: fn(&FlightPoint) -> f64| points.iter().map(of).collect::<Vec<_>>();
     let mass_kg = column(|point| point.mass.to_kilograms());
     let pressure_altitude_m = column(|point| point.pressure_altitude.to_meters());

@@ -309,6 +309,12 @@ impl CsvText {
 }
 
 impl CsvError {
+    /// Whether nothing but a value is missing: an empty field, or `-`, where a number is needed.
+    #[must_use]
+    pub fn is_missing_value(&self) -> bool {
+        matches!(&self.reason, CsvErrorReason::NotANumber { found } if !is_available(found))
+    }
+
     fn new(line: u64, reason: CsvErrorReason) -> Self {
         Self { line, column: None, reason }
     }

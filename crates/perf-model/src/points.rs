@@ -32,8 +32,8 @@ pub struct FlightPointRow {
     pub line: u64,
     /// Fields as sent, as many as the header has names.
     pub fields: Vec<String>,
-    /// Their meaning.
-    pub point: FlightPoint,
+    /// Their meaning; the error of a needed value that is missing ([`CsvError::is_missing_value`]).
+    pub point: Result<FlightPoint, CsvError>,
 }
 
 /// A condition of level, unaccelerated flight.
@@ -83,17 +83,20 @@ impl FlightPoints {
     ///
     /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft` or `flight_level`; `mach`;
     /// optionally `isa_deviation_c` (otherwise the ISA), `fuel_flow_lb_h` or `fuel_flow_kg_h`, `date`,
-    /// `cg_percent_mac`, `anti_ice`, `latitude_deg`, `true_heading_deg`. In an optional column other than
-    /// `isa_deviation_c` an empty field or `-` means "not available". Columns whose name begins with `X-` are kept and
+    /// `cg_percent_mac`, `anti_ice`, `latitude_deg`, `true_heading_deg`. An empty field or `-` means "not available": in a column
+    /// that is needed, and in `isa_deviation_c`, the row is then without a point. Columns whose name begins with `X-` are kept and
     /// have no meaning.
     ///
     /// # Errors
-    /// [`CsvError`] at the first fault, as for [`Guide::from_csv`](crate::Guide::from_csv).
+    /// [`CsvError`] at the first fault, as for [`Guide::from_csv`](crate::Guide::from_csv), but for values that are missing.
     pub fn from_csv(text: &[u8]) -> Result<Self, CsvError> {
         let file = CsvText::read(text, &COLUMNS)?;
         let columns = Columns::find_in(&file)?;
-        let points =
-            file.rows.iter().map(|row| columns.point(&file, row)).collect::<Result<Vec<_>, _>>()?;
+        let point = |row| match columns.point(&file, row) {
+            Err(error) if !error.is_missing_value() => Err(error),
+            point => Ok(point),
+        };
+        let points = file.rows.iter().map(point).collect::<Result<Vec<_>, _>>()?;
         let CsvText { header, rows, .. } = file;
         let rows = rows
             .into_iter()
@@ -252,7 +255,7 @@ mod tests {
         assert_eq!((first.line, second.line), (2, 3));
         assert_eq!(first.fields[1], " 30000");
         assert_eq!(first.fields[10], "first, best");
-        let point = first.point;
+        let point = first.point.clone().unwrap();
         assert_eq!(point.date, Some("2018-05-20T00:00:00Z".parse().unwrap()));
         assert!((point.mass.to_pounds() - 30_000.0).abs() < 1e-9);
         assert!((point.pressure_altitude.to_feet() - 43_000.0).abs() < 1e-9);
@@ -263,7 +266,7 @@ mod tests {
         assert_eq!(point.anti_ice, Some(true));
         assert!((point.latitude.unwrap().to_degrees() + 45.0).abs() < 1e-9);
         assert!((point.true_heading.unwrap().to_degrees() - 270.0).abs() < 1e-9);
-        let bare = second.point;
+        let bare = second.point.clone().unwrap();
         assert_eq!(bare.date, Some("2018-05-20T12:14:21Z".parse().unwrap()));
         assert_eq!(
             bare,
@@ -290,14 +293,26 @@ mod tests {
     fn the_shortest_file() {
         let points =
             FlightPoints::from_csv(b"mass_kg,pressure_altitude_ft,mach\n14000,41000,0.8").unwrap();
-        assert_eq!(
-            points.rows()[0].point,
-            FlightPoint::new(
-                Mass::kilograms(14_000.0),
-                PressureAltitude::feet(41_000.0),
-                Mach::new(0.8)
-            )
+        let expected = FlightPoint::new(
+            Mass::kilograms(14_000.0),
+            PressureAltitude::feet(41_000.0),
+            Mach::new(0.8),
         );
+        assert_eq!(points.rows()[0].point, Ok(expected));
+    }
+
+    #[test]
+    fn a_row_that_lacks_a_needed_value_is_no_point_and_no_fault() {
+        let text = "mass_kg,pressure_altitude_ft,mach,isa_deviation_c\n\
+                    ,41000,0.8,0\n14000,-,0.8,0\n14000,41000, ,0\n14000,41000,0.8,\n14000,41000,0.8,0\n";
+        let points = FlightPoints::from_csv(text.as_bytes()).unwrap();
+        let named = |row: &FlightPointRow| {
+            row.point.as_ref().err().and_then(|error| error.column.as_ref()).map(|it| it.number)
+        };
+        let named: Vec<Option<usize>> = points.rows().iter().map(named).collect();
+        assert_eq!(named, [Some(1), Some(2), Some(3), Some(4), None]);
+        // A word is a fault, and so is the first one behind a value that is missing.
+        assert!(FlightPoints::from_csv(text.replace("-", "none").as_bytes()).is_err());
     }
 
     #[test]
@@ -311,10 +326,6 @@ mod tests {
             (
                 "14000,41000,1.2,0,,",
                 "line 2, column 3 (mach): found \"1.2\", expected 0.1..=0.99 Mach (Mach number)",
-            ),
-            (
-                "14000,41000,0.8,,,",
-                "line 2, column 4 (isa_deviation_c): found \"\", expected a number",
             ),
             (
                 "14000,41000,0.8,216.65,,",

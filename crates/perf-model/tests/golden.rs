@@ -155,7 +155,7 @@ fn static_points_of_the_simulator_read_and_predict() {
     let errors: Vec<f64> = points
         .rows()
         .iter()
-        .map(|row| model.predict(&row.point).unwrap().error_percent.unwrap())
+        .map(|row| model.predict(row.point.as_ref().unwrap()).unwrap().error_percent.unwrap())
         .collect();
     // The guide is 2 to 7 % too optimistic, and the polynomial misses it by 3 % more: errors are positive on average.
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;

@@ -47,6 +47,11 @@ impl Failure {
         Self { line: Some(line), ..self }
     }
 
+    /// What is wrong with the names of a table's columns, which are in no row.
+    pub(crate) fn names(error: &CsvError) -> Self {
+        Self { line: None, ..Self::table(error) }
+    }
+
     /// What is wrong with a guide or with flight points.
     pub(crate) fn table(error: &CsvError) -> Self {
         let column = error.column.as_ref().map(|column| column.name.clone());

@@ -8,8 +8,8 @@ use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, RecordBatchOptions};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
-use perf_model::{CsvError, PointCell, PointTable};
-use pipeline::prediction::{PredictedPoints, Predictor, measured_kg_s};
+use perf_model::{PointCell, PointTable};
+use pipeline::prediction::{PredictedPoints, Predictor, measured_kg_s, missing_value};
 use rayon::prelude::*;
 
 use crate::failure::Failure;
@@ -57,7 +57,7 @@ pub(crate) fn predict(
     caller: &Caller,
 ) -> Result<(Points, Unpredicted), Failure> {
     let names = given.schema.fields().iter().map(|field| field.name().clone()).collect();
-    let points = PointTable::new(names).map_err(|error| Failure::table(&error))?;
+    let points = PointTable::new(names).map_err(|error| Failure::names(&error))?;
     let read = plain(given.batches.clone())?;
     let mut cuts = Vec::new();
     let mut rows = 0;
@@ -180,21 +180,15 @@ impl At<'_> {
                     places.push(row);
                 }
                 (Err(error), Some(Ok(reader))) if is_missing(reader.value(row)) => {
-                    without.push((row, missing(&error)));
+                    without.push((row, missing_value(&error)));
                 }
                 (Err(error), _) => return Err(Failure::table(&error)),
             }
         }
         let measured = self.states_error.then(|| measured_kg_s(&points));
         let found = self.predictor.at_points(&points, measured.as_deref());
-        Ok(if without.is_empty() { found } else { spread(found, &places, without) })
+        Ok(found.among_rows(&places, without))
     }
-}
-
-/// Why a point is none.
-fn missing(error: &CsvError) -> String {
-    let column = error.column.as_ref().map_or("a column", |column| column.name.as_str());
-    format!("{column}: no value")
 }
 
 const fn is_missing(value: Value<'_>) -> bool {
@@ -203,27 +197,6 @@ const fn is_missing(value: Value<'_>) -> bool {
         Value::Number(value) => value.is_nan(),
         _ => false,
     }
-}
-
-/// The predictions of points among rows of which others are no points.
-fn spread(
-    found: PredictedPoints,
-    places: &[usize],
-    without: Vec<(usize, String)>,
-) -> PredictedPoints {
-    let rows = places.len() + without.len();
-    let columns = found.columns.into_iter().map(|(name, values)| {
-        let mut column = vec![f64::NAN; rows];
-        for (place, value) in places.iter().zip(values) {
-            column[*place] = value;
-        }
-        (name, column)
-    });
-    let mut refused: Vec<_> =
-        found.refused.into_iter().map(|(point, reason)| (places[point], reason)).collect();
-    refused.extend(without);
-    refused.sort_by_key(|(place, _)| *place);
-    PredictedPoints { columns: columns.collect(), refused }
 }
 
 /// The values of an array of numbers, NaN for nulls; `None` for other arrays.

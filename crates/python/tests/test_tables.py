@@ -79,6 +79,9 @@ def test_points_outside_the_table_are_null_and_said(initial):
     with pytest.raises(cruisefit.InputError) as caught:
         initial.predict(table, strict=True)
     assert caught.value.line == 2
+    assert str(caught.value).startswith("row 2: 1 points have no prediction")
+    with pytest.raises(cruisefit.InputError, match="^column speed: unknown column"):
+        initial.predict({**ROWS, "speed": [1.0, 2.0, 3.0]})
 
 
 @pytest.mark.parametrize("column", sorted(ROWS))

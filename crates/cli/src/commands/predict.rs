@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use flight::Segment;
-use perf_model::{FlightPoint, FlightPointRow, FlightPoints, PointCell, PointTable};
+use perf_model::{CsvError, FlightPoint, FlightPoints, PointCell, PointTable};
 
 use crate::args::PredictArgs;
 use crate::columns;
@@ -19,11 +19,14 @@ use crate::reading::{Buffers, FlightRead, Source, is_parquet};
 use crate::{parquet_batches, parquet_numbers};
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
-use pipeline::prediction::{Predictor, columns_of_segments, measured_kg_s, point_of_segment};
+use pipeline::prediction::{
+    PredictedColumn, Predictor, columns_of_segments, measured_kg_s, missing_value, point_of_segment,
+};
 use pipeline::reading::Checks;
 use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
 use report::MAXIMUM_TEXT_BYTES;
+use report::mapping::line_of_names;
 
 /// Runs the command.
 ///
@@ -48,33 +51,66 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     if let Some(outcome) = predict_numbers(arguments, &model, &predictor)? {
         return Ok(outcome);
     }
-    let text = points_text(&arguments.points)?;
-    let points = FlightPoints::from_csv(&text)
-        .map_err(|error| Failure::bad_file(&arguments.points, error))?;
+    predict_rows(arguments, &model, &predictor)
+}
+
+/// The command for points that are looked at row by row.
+fn predict_rows(
+    arguments: &PredictArgs,
+    model: &ModelFile,
+    predictor: &Predictor<'_>,
+) -> Result<Outcome, Failure> {
+    let bad = |error: CsvError| Failure::bad_file(&arguments.points, error);
+    let (text, given) = points_text(arguments)?;
+    let points = FlightPoints::from_csv(&text).map_err(bad)?;
     let mut columns = Columns::default();
     for (column, name) in points.header().iter().enumerate() {
-        let fields = points.rows().iter().map(|row| row.fields[column].clone());
+        let fields = points.rows().iter().map(|row| row.fields[column].as_str());
         columns.text(name.as_str(), fields);
     }
-    let flights: Vec<FlightPoint> = points.rows().iter().map(|row| row.point).collect();
-    let measured = measured_kg_s(&flights);
-    let any_measured = measured.iter().any(|flow| !flow.is_nan());
-    let mut predicted = predictor.at_points(&flights, any_measured.then_some(&measured[..]));
+    let (mut flights, mut places, mut without) = (Vec::new(), Vec::new(), Vec::new());
+    for (place, row) in points.rows().iter().enumerate() {
+        match &row.point {
+            Ok(point) => {
+                flights.push(*point);
+                places.push(place);
+            }
+            Err(error) => without.push((place, missing_value(error))),
+        }
+    }
+    let table = PointTable::new(points.header().to_vec()).map_err(bad)?;
+    let measured = states_error(arguments, &table).then(|| measured_kg_s(&flights));
+    let mut predicted =
+        predictor.at_points(&flights, measured.as_deref()).among_rows(&places, without);
     let refused = std::mem::take(&mut predicted.refused);
     predicted.append_to(&mut columns);
-    let json = deliver(arguments, &columns)?;
-    tell_references(&model, points.rows());
+    let json = deliver(arguments, &columns, given)?;
+    tell_references(model, &flights);
     let lines = refused.into_iter().map(|(place, reason)| (points.rows()[place].line, reason));
-    let outcome = outcome(arguments, &predictor, points.rows().len(), lines);
+    let outcome = outcome(arguments, predictor, points.rows().len(), lines);
     Ok(Outcome { json, ..outcome })
 }
 
+/// Whether the error of the prediction is a column: that must not depend on the values in a table.
+fn states_error(arguments: &PredictArgs, table: &PointTable) -> bool {
+    let is_asked = |columns: &Vec<_>| columns.contains(&PredictedColumn::ErrorPercent);
+    table.measured_fuel_flow().is_some() || arguments.columns.as_ref().is_some_and(is_asked)
+}
+
 /// Writes the table, or makes the document that is asked for in its place.
-fn deliver(arguments: &PredictArgs, columns: &Columns) -> Result<Option<Vec<u8>>, Failure> {
-    if let (true, None) = (arguments.json.json, &arguments.output) {
-        return Ok(Some(columns.to_json()));
+fn deliver(
+    arguments: &PredictArgs,
+    columns: &Columns,
+    given: Given,
+) -> Result<Option<Vec<u8>>, Failure> {
+    let output = arguments.output.as_deref();
+    match (arguments.json.json, output, given) {
+        (true, None, _) => return Ok(Some(columns.to_json())),
+        (_, _, Given::Text) => columns::write(columns, output)?,
+        (_, _, Given::Parquet) => {
+            columns::write_beside(&kept(&arguments.points)?, columns, output)?
+        }
     }
-    columns::write(columns, arguments.output.as_deref())?;
     Ok(arguments.json.json.then(|| columns.to_json()))
 }
 
@@ -135,13 +171,22 @@ fn predict_numbers(
                 value if value.is_nan() => PointCell::Missing,
                 value => PointCell::Number(value),
             };
-            table.point(row as u64 + 2, cell).map_err(|error| bad(&error))?;
+            match table.point(row as u64 + 2, cell) {
+                Err(error) if !error.is_missing_value() => return Err(bad(&error)),
+                _ => {}
+            }
         }
         return Ok(None);
     };
-    let measured = points.measured_fuel_flow_kg_s();
-    let measured = measured.filter(|flows| flows.iter().any(|flow| !flow.is_nan()));
     let flights = points.flights();
+    let none;
+    let measured = match points.measured_fuel_flow_kg_s() {
+        None if states_error(arguments, &table) => {
+            none = vec![f64::NAN; flights.count()];
+            Some(&none[..])
+        }
+        measured => measured,
+    };
     let mut predicted = predictor.at_level_flights(flights, measured);
     let refused = std::mem::take(&mut predicted.refused);
     let mut columns = Columns::default();
@@ -149,7 +194,7 @@ fn predict_numbers(
         columns.dense(name, values);
     }
     predicted.append_to(&mut columns);
-    let json = deliver(arguments, &columns)?;
+    let json = deliver(arguments, &columns, Given::Parquet)?;
     // As in a text, line 1 has the names.
     let lines = refused.into_iter().map(|(place, reason)| (place as u64 + 2, reason));
     Ok(Some(Outcome { json, ..outcome(arguments, predictor, flights.count(), lines) }))
@@ -164,10 +209,14 @@ fn opened(path: &Path) -> std::io::Result<std::fs::File> {
     standard_input::file(path).and_then(std::fs::File::open)
 }
 
-/// Whether a file is a table of segments in text.
+/// Whether a file is a table of segments.
 fn is_segments(path: &Path) -> bool {
     let mut beginning = Vec::new();
     let read = opened(path).and_then(|file| file.take(64).read_to_end(&mut beginning));
+    if read.is_ok() && is_parquet(&beginning) {
+        let names = kept(path).ok().and_then(|file| parquet_batches::names_of_file(&file).ok());
+        beginning = names.map(|names| line_of_names(&names).into_bytes()).unwrap_or_default();
+    }
     read.is_ok() && segments_table::is_table(&beginning)
 }
 
@@ -194,7 +243,7 @@ fn predict_segments(
     let mut predicted = predictor.at_points(&points, Some(&measured));
     let unpredicted = std::mem::take(&mut predicted.refused);
     predicted.append_to(&mut columns);
-    let json = deliver(arguments, &columns)?;
+    let json = deliver(arguments, &columns, Given::Text)?;
     let place = |place: usize| {
         let means = &segments[place];
         format!(
@@ -213,10 +262,10 @@ fn predict_segments(
 }
 
 /// Warns once about each applied effect that is held at its reference because an input is missing.
-fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
+fn tell_references(model: &ModelFile, points: &[FlightPoint]) {
     let Some(effects) = model.initial.effects() else { return };
     let mut warned = Vec::new();
-    for (effect, missing) in rows.iter().flat_map(|row| effects.at_reference(&row.point)) {
+    for (effect, missing) in points.iter().flat_map(|point| effects.at_reference(point)) {
         if !warned.contains(&(effect, missing)) {
             warned.push((effect, missing));
             tracing::warn!("points without {missing}: {effect} is at its reference there");
@@ -224,12 +273,27 @@ fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
     }
 }
 
+/// What flight points were given as.
+#[derive(Clone, Copy)]
+enum Given {
+    Text,
+    Parquet,
+}
+
 /// Flight points as CSV text; a Parquet file's rows are written as such first.
-fn points_text(path: &Path) -> Result<Vec<u8>, Failure> {
+fn points_text(arguments: &PredictArgs) -> Result<(Vec<u8>, Given), Failure> {
+    let path = &arguments.points;
     let bytes = std::fs::read(kept(path)?).map_err(|error| Failure::unreadable(path, error))?;
     if !is_parquet(&bytes) {
-        return Ok(bytes);
+        return Ok((bytes, Given::Text));
     }
-    parquet_batches::csv_of_file(&kept(path)?, MAXIMUM_TEXT_BYTES)
-        .map_err(|error| Failure::bad_file(path, error))
+    let file = kept(path)?;
+    let text = parquet_batches::csv_of_file(&file, MAXIMUM_TEXT_BYTES);
+    let text = text.map_err(|error| Failure::bad_file(path, error))?;
+    if !arguments.output.as_deref().is_some_and(columns::is_parquet_name) {
+        for name in parquet_batches::unread_of_file(&file).unwrap_or_default() {
+            tracing::warn!("column {name}: of a type that is not read, left empty");
+        }
+    }
+    Ok((text, Given::Parquet))
 }

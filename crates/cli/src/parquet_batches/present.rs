@@ -9,9 +9,9 @@ use parquet::schema::types::ColumnDescriptor;
 use parquet_pages::{Column, Damage, Form, Values};
 use report::mapping::BatchColumn;
 
-use super::Kind;
 use super::cells::add_run;
 use super::pages::{Pages, refused};
+use super::{Kind, Whole, power_of_ten};
 
 /// A column that is read so.
 pub(super) struct Present {
@@ -24,10 +24,11 @@ impl Present {
     /// `None` for a column of other values than numbers, instants and texts.
     pub(super) fn new(column: &ColumnDescriptor, kind: Kind, pages: Pages) -> Option<Self> {
         let form = match (kind, column.physical_type()) {
-            (Kind::Number(_), PhysicalType::DOUBLE) => Form::Double,
-            (Kind::Number(_), PhysicalType::FLOAT) => Form::Float,
-            (Kind::Number(factor), PhysicalType::INT32) => Form::Int32(factor),
-            (Kind::Number(factor), PhysicalType::INT64) => Form::Int64(factor),
+            (Kind::Number, PhysicalType::DOUBLE) => Form::Double,
+            (Kind::Number, PhysicalType::FLOAT) => Form::Float,
+            (Kind::Whole(Whole { is_unsigned: true, .. }), _) => return None,
+            (Kind::Whole(whole), PhysicalType::INT32) => Form::Int32(power_of_ten(whole.decimals)),
+            (Kind::Whole(whole), PhysicalType::INT64) => Form::Int64(power_of_ten(whole.decimals)),
             (Kind::Instant(each) | Kind::LocalTime(each), PhysicalType::INT64) => {
                 Form::Nanoseconds(each)
             }

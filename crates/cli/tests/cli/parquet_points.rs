@@ -3,8 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use parquet::data_type::DoubleType;
-use parquet::file::writer::SerializedFileWriter;
+use parquet::data_type::{
+    BoolType, ByteArrayType, DataType, DoubleType, FixedLenByteArray, FixedLenByteArrayType,
+    FloatType, Int32Type, Int64Type,
+};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::record::Field;
 use parquet::schema::parser::parse_message_type;
 
 use crate::support::{Ran, cruisefit, initial_model};
@@ -73,14 +78,135 @@ fn points_in_parquet_are_predicted_as_those_in_text() {
 }
 
 #[test]
-fn a_value_that_lacks_is_named_by_its_row() {
+fn a_value_that_lacks_costs_its_row() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
     let parquet = scratch.path().join("points.parquet");
     let row = |mach| [Some(68_000.0), Some(41_000.0), mach, Some(1_500.0)];
     write(&parquet, &[row(Some(0.8)), row(None), row(Some(0.8))]);
-    let ran = predict(&model, &parquet).expect(2);
-    ran.says("points.parquet: line 3, column 3 (mach): found \"\", expected a number");
+    let ran = predict(&model, &parquet).expect(1);
+    ran.says("points.parquet:3: mach: no value");
+    let lines: Vec<&str> = ran.stdout.lines().collect();
+    assert!(lines[2].ends_with(",,,,,,,"), "{}", lines[2]);
+    assert_eq!(lines[1], lines[3]);
     // No line of a packed file is shown.
     assert!(!ran.stderr.contains("PAR1"), "{}", ran.stderr);
+    write(&parquet, &[row(Some(0.8)), row(Some(78.0)), row(None)]);
+    let refused = predict(&model, &parquet).expect(2);
+    refused.says("points.parquet: line 3, column 3 (mach): found \"78\"");
+}
+
+/// A table in which no fuel flow is measured has the column of errors where it could have been.
+#[test]
+fn columns_do_not_depend_on_values() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let names = |points: &Path, more: &[&str]| {
+        let given = ["predict", "--model"].map(AsRef::as_ref);
+        let paths = [model.as_os_str(), points.as_os_str()];
+        let more = more.iter().map(AsRef::as_ref);
+        let all: Vec<&std::ffi::OsStr> = given.into_iter().chain(paths).chain(more).collect();
+        let ran = cruisefit(&all).expect(0);
+        ran.stdout.lines().next().unwrap().to_owned()
+    };
+    let row = |measured| [Some(68_000.0), Some(41_000.0), Some(0.8), measured];
+    let (with, without) =
+        (scratch.path().join("with.parquet"), scratch.path().join("without.parquet"));
+    write(&with, &[row(Some(1_500.0)), row(None)]);
+    write(&without, &[row(None), row(None)]);
+    assert!(names(&with, &[]).contains("error_percent"));
+    assert_eq!(names(&with, &[]), names(&without, &[]));
+    let text = scratch.path().join("points.csv");
+    std::fs::write(&text, "mass_kg,pressure_altitude_ft,mach\n30000,41000,0.8\n").unwrap();
+    let asked = names(&text, &["--columns", "error_percent"]);
+    assert_eq!(asked, "mass_kg,pressure_altitude_ft,mach,error_percent");
+}
+
+/// What comes in goes out with type and value. Oracle: what was written.
+#[test]
+fn columns_of_any_type_go_out_as_they_came() {
+    const SCHEMA: &str = "message points {
+        required int32 mass_kg; optional int64 pressure_altitude_ft; required float mach;
+        optional int64 X-id; optional binary X-name (UTF8); optional boolean X-flag; optional int32 X-day (DATE);
+        optional int64 X-instant (TIMESTAMP(MICROS, true)); optional fixed_len_byte_array(5) X-price (DECIMAL(10, 2));
+        optional group X-list (LIST) { repeated group list { optional int64 element; } }
+    }";
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let (given, written) =
+        (scratch.path().join("points.parquet"), scratch.path().join("out.parquet"));
+    let schema = Arc::new(parse_message_type(SCHEMA).unwrap());
+    let file = std::fs::File::create(&given).unwrap();
+    let mut writer = SerializedFileWriter::new(file, schema, Arc::default()).unwrap();
+    // Two groups; in the second all that may lack lacks.
+    for levels in [[1_i16, 1], [1, 0]] {
+        let mut group = writer.next_row_group().unwrap();
+        write_column::<Int32Type>(&mut group, &[30_000, 31_000], &[1, 1]);
+        write_column::<Int64Type>(&mut group, &[41_000, 39_000], &[1, 1]);
+        write_column::<FloatType>(&mut group, &[0.78, 0.8], &[1, 1]);
+        write_column::<Int64Type>(&mut group, &[(1 << 60) + 1, -(1 << 60) - 3], &levels);
+        write_column::<ByteArrayType>(&mut group, &["=1".into(), "b".into()], &levels);
+        write_column::<BoolType>(&mut group, &[true, false], &levels);
+        write_column::<Int32Type>(&mut group, &[17_897, -1], &levels);
+        write_column::<Int64Type>(&mut group, &[1_577_934_245_000_678, 0], &levels);
+        let price = |bytes: [u8; 5]| FixedLenByteArray::from(bytes.to_vec());
+        let prices = [price([0, 0, 0, 0, 10]), price([0xff, 0xff, 0xff, 0xff, 0x85])];
+        write_column::<FixedLenByteArrayType>(&mut group, &prices, &levels);
+        let mut list = group.next_column().unwrap().unwrap();
+        let definition = [3, 3, levels[1]];
+        list.typed::<Int64Type>()
+            .write_batch(&[7, 8], Some(&definition), Some(&[0, 1, 0]))
+            .unwrap();
+        list.close().unwrap();
+        group.close().unwrap();
+    }
+    writer.close().unwrap();
+    let arguments: [&std::ffi::OsStr; 6] = [
+        "predict".as_ref(),
+        "--model".as_ref(),
+        model.as_ref(),
+        given.as_ref(),
+        "-o".as_ref(),
+        written.as_ref(),
+    ];
+    cruisefit(&arguments).expect(0);
+    let read = |path: &Path| SerializedFileReader::new(std::fs::File::open(path).unwrap()).unwrap();
+    let (before, after) = (read(&given), read(&written));
+    let fields = |reader: &SerializedFileReader<std::fs::File>| {
+        reader.metadata().file_metadata().schema().get_fields().to_vec()
+    };
+    let (came, went) = (fields(&before), fields(&after));
+    assert_eq!(went[..came.len()], came[..]);
+    assert_eq!(went[came.len()].name(), "fuel_flow_kg_s");
+    let rows = |reader: &SerializedFileReader<std::fs::File>| {
+        let rows = reader.get_row_iter(None).unwrap().map(Result::unwrap);
+        let fields = rows.map(|row| row.get_column_iter().map(|(_, it)| it.clone()).collect());
+        fields.collect::<Vec<Vec<Field>>>()
+    };
+    for (came, went) in rows(&before).iter().zip(rows(&after)) {
+        assert_eq!(went[..came.len()], came[..]);
+        assert!(matches!(went[came.len()], Field::Double(flow) if flow > 0.0));
+    }
+    assert_eq!(rows(&after).len(), 4);
+    // As text every digit is kept too; a list is no cell, and that is said.
+    let text = predict(&model, &given).expect(0);
+    text.says("column X-list.list.element: of a type that is not read, left empty");
+    assert!(text.stdout.contains("1152921504606846977"), "{}", text.stdout);
+    assert!(text.stdout.contains(",-1.23,"), "{}", text.stdout);
+}
+
+fn write_column<T: DataType>(
+    group: &mut SerializedRowGroupWriter<'_, std::fs::File>,
+    values: &[T::T],
+    levels: &[i16],
+) {
+    let mut column = group.next_column().unwrap().unwrap();
+    let present: Vec<T::T> = values
+        .iter()
+        .zip(levels)
+        .filter(|(_, level)| **level > 0)
+        .map(|(v, _)| v.clone())
+        .collect();
+    column.typed::<T>().write_batch(&present, Some(levels), None).unwrap();
+    column.close().unwrap();
 }

@@ -147,6 +147,17 @@ fn a_table_of_segments_is_worth_the_reports_it_was_made_of() {
     let write = ["segment".as_ref(), reports.as_os_str(), "-o".as_ref(), parquet.as_os_str()];
     cruisefit(&write).expect(0);
     assert_eq!(evaluate(&parquet), table);
+    // Predicted alike, too.
+    let predict = |segments: &Path| {
+        let output = folder.path().join("predicted.csv");
+        let (of, to) = (segments.as_os_str(), output.as_os_str());
+        let arguments = ["predict".as_ref(), "--model".as_ref(), model.as_os_str(), of];
+        let all: Vec<_> = arguments.into_iter().chain(["-o".as_ref(), to]).collect();
+        let ran = cruisefit(&all);
+        assert!(ran.stdout.contains("points predicted"), "{}", ran.stderr);
+        std::fs::read_to_string(output).unwrap()
+    };
+    assert_eq!(predict(&parquet), predict(&segments));
 }
 
 /// Oracle: the segments that the points were written from, in other units.

@@ -274,8 +274,14 @@ mod tests {
             })
             .collect();
         let texts: Vec<PointCell<'_>> = row.split(',').map(PointCell::Text).collect();
-        assert_eq!(table().point(1, |column| cells[column]).unwrap(), read.rows()[0].point);
-        assert_eq!(table().point(1, |column| texts[column]).unwrap(), read.rows()[0].point);
+        assert_eq!(
+            table().point(1, |column| cells[column]).unwrap(),
+            read.rows()[0].point.clone().unwrap()
+        );
+        assert_eq!(
+            table().point(1, |column| texts[column]).unwrap(),
+            read.rows()[0].point.clone().unwrap()
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use adapt::bayes::Posterior;
 use diagnose::{LevelAnswers, LevelQuestion, WholeModelOfLevels};
 use effects::ExtendedModel;
 use perf_model::specific_range::specific_range;
-use perf_model::{FlightPoint, LevelBlock, LevelFlights};
+use perf_model::{CsvError, FlightPoint, LevelBlock, LevelFlights};
 use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
 
 use super::Predictor;
@@ -233,12 +233,41 @@ impl Predictor<'_> {
 }
 
 impl PredictedPoints {
+    /// Those of points among rows of which others are no points: `places` are the rows of the points, `without` the others, with
+    /// the reason.
+    #[must_use]
+    pub fn among_rows(self, places: &[usize], without: Vec<(usize, String)>) -> Self {
+        if without.is_empty() {
+            return self;
+        }
+        let rows = places.len() + without.len();
+        let columns = self.columns.into_iter().map(|(name, values)| {
+            let mut column = vec![f64::NAN; rows];
+            for (place, value) in places.iter().zip(values) {
+                column[*place] = value;
+            }
+            (name, column)
+        });
+        let mut refused: Refused =
+            self.refused.into_iter().map(|(point, reason)| (places[point], reason)).collect();
+        refused.extend(without);
+        refused.sort_by_key(|(place, _)| *place);
+        Self { columns: columns.collect(), refused }
+    }
+
     /// Appends the columns to others.
     pub fn append_to(self, columns: &mut Columns) {
         for (name, values) in self.columns {
             columns.dense(name, values);
         }
     }
+}
+
+/// Why a row is no point that lacks a value which it needs.
+#[must_use]
+pub fn missing_value(error: &CsvError) -> String {
+    let column = error.column.as_ref().map_or("a column", |column| column.name.as_str());
+    format!("{column}: no value")
 }
 
 /// Measured fuel flow of all engines at each point, kg/s, NaN where none.

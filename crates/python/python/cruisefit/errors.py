@@ -40,7 +40,8 @@ class CruisefitError(Exception):
         if file is not None:
             where = f"{file}:"
         if line is not None:
-            where += f" line {line}," if where else f"line {line},"
+            # A table that was given as one has rows, and no line of names above them.
+            where += f" line {line}," if where else f"row {line},"
         if column is not None:
             where += f" column {column},"
         where = where.rstrip(",").rstrip(":").strip()
