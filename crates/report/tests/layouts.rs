@@ -80,6 +80,18 @@ fn flights_and_tails_are_found_by_usual_names() {
     assert!(unnamed.contains("flight: FileName,   // ? one flight"), "{unnamed}");
 }
 
+/// Names of our own tables are known too, and the drift angle is found from track and heading.
+#[test]
+fn time_in_seconds_and_a_drift_from_track_and_heading() {
+    let text = "time_s,pressure_altitude_ft,mach,ground_speed_kt,fuel_flow_kg_h,true_track,true_heading\n\
+                0,37000,0.78,450,2400,92,90\n60,37000,0.78,450,2400,92,90\n";
+    let mapping = first_mapping(text.as_bytes()).unwrap();
+    assert!(mapping.contains("time: Seconds(column: \"time_s\""), "{mapping}");
+    let drift =
+        "\"DRIFT\": Difference(column: \"true_track\", minus: \"true_heading\", unit: \"deg\")";
+    assert!(mapping.contains(drift), "{mapping}");
+}
+
 /// A computed fuel on board would bear out the meters that it was computed from.
 #[test]
 fn gauges_are_known_by_names_that_nothing_computed_has() {

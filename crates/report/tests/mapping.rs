@@ -125,7 +125,9 @@ fn derived_quantities() {
 
 #[test]
 fn written_reports_read_back() {
-    for parsed in mapping(MAPPING).read(RECORDING.as_bytes()).unwrap() {
+    let read = mapping(MAPPING).read(RECORDING.as_bytes()).unwrap();
+    assert_eq!(read.len(), 2);
+    for parsed in read {
         let text = write(&parsed.report, &TextLayout::exact(), &[]).unwrap();
         assert_eq!(Reader::new().read(text.as_bytes()).unwrap().report, parsed.report);
     }

@@ -335,6 +335,15 @@ fn decimal_commas_units_rows_and_encodings() {
     for bytes in [utf_16, utf_16_big, windows_1252, with_mark] {
         assert_eq!(european.read(&bytes).unwrap(), expected);
     }
+    // A point may group thousands there; unless the mapping says that it does, a number with one is refused.
+    let grouped = rows.replace("37000", "37.000");
+    let refusal = european.read(grouped.as_bytes()).unwrap_err();
+    assert!(refusal.to_string().contains("\"37.000\""), "{refusal}");
+    let with_groups = mapping(&[(
+        "format: 1,",
+        "format: 1, separator: ';', decimal: ',', thousands: '.', units_row: true,",
+    )]);
+    assert_eq!(columns(&read(&with_groups, &grouped)), columns(&expected));
     // Without the separator the message says what the line holds.
     let refusal = mapping(&[]).read(rows.as_bytes()).unwrap_err();
     assert!(refusal.to_string().contains("separator: ';' in the mapping?"), "{refusal}");

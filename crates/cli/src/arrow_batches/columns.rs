@@ -207,6 +207,12 @@ impl Column {
                 let words = bytes.as_chunks::<4>().0.iter();
                 words.map(|word| f64::from(f32::from_le_bytes(*word))).collect()
             }
+            Number::Unsigned(8) => bytes
+                .as_chunks::<8>()
+                .0
+                .iter()
+                .map(|word| u64::from_le_bytes(*word) as f64)
+                .collect(),
             Number::Signed(_) | Number::Unsigned(_) => {
                 let is_signed = matches!(form, Number::Signed(_));
                 let value = |row| integer(bytes, row, width, is_signed).map(|value| value as f64);
@@ -254,4 +260,19 @@ fn integer(bytes: &[u8], row: usize, width: usize, is_signed: bool) -> Option<i6
 fn texts_of(counts: Vec<Option<i64>>, text: impl Fn(i64) -> String) -> BatchColumn {
     let texts = counts.into_iter().map(|count| count.map_or_else(String::new, &text));
     BatchColumn::Texts(text_runs(texts))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: all bits set are 2^64 − 1, next to 2^64 in double precision.
+    #[test]
+    fn the_largest_bit_of_an_unsigned_number_is_no_sign() {
+        let data = [u64::MAX, 7].map(u64::to_le_bytes).concat();
+        let kind = Kind::Number(Number::Unsigned(8));
+        let column = Column { kind, validity: Vec::new(), data, texts: Vec::new() };
+        let found = column.numbers(0..2, Number::Unsigned(8)).unwrap();
+        assert_eq!(found, [18_446_744_073_709_551_616.0, 7.0]);
+    }
 }

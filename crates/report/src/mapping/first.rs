@@ -11,7 +11,7 @@ use core::fmt::Write;
 use columns::Columns;
 use names::engine_of;
 use rules::{
-    CALIBRATED, COMPUTED_FUEL, ENGINE_NAMES, GAUGES, GROSS, Kind, ORDINARY, Rule, TEXTS,
+    CALIBRATED, COMPUTED_FUEL, ENGINE_NAMES, GAUGES, GROSS, HEADING, Kind, ORDINARY, Rule, TEXTS,
     TOTAL_FLOW, TRACK, USED, ZERO_FUEL,
 };
 
@@ -170,7 +170,7 @@ impl Columns {
             line(text, "VTAS", "FromMach", true);
         }
         if let (false, Some(track)) = (has("DRIFT"), self.find(&TRACK))
-            && let Some(heading) = self.find(&ORDINARY[8])
+            && let Some(heading) = self.find(&HEADING)
         {
             let source = format!(
                 "Difference(column: {:?}, minus: {:?}, unit: \"deg\")",

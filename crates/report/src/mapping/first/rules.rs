@@ -24,6 +24,13 @@ const fn rule(quantity: &'static str, names: &'static [&'static str], kind: Kind
     Rule { quantity, names, kind }
 }
 
+/// The heading, of which the drift angle is the track less this.
+pub(super) const HEADING: Rule = rule(
+    "HDG",
+    &["headingtrue", "trueheading", "hdgtrue", "truehdg", "heading", "hdg"],
+    Kind::Angle,
+);
+
 pub(super) const ORDINARY: [Rule; 13] = [
     rule(
         "ALT",
@@ -55,11 +62,7 @@ pub(super) const ORDINARY: [Rule; 13] = [
     rule("GSPD", &["groundspeed", "groundspd", "grndspd", "gndspd", "gspd", "gs"], Kind::Speed),
     rule("ROLL", &["rollangle", "roll", "bank", "bankangle"], Kind::Angle),
     rule("DRIFT", &["driftangle", "drift"], Kind::Angle),
-    rule(
-        "HDG",
-        &["headingtrue", "trueheading", "hdgtrue", "truehdg", "heading", "hdg"],
-        Kind::Angle,
-    ),
+    HEADING,
     rule("LAT", &["latitude", "lat"], Kind::Angle),
     rule("LON", &["longitude", "lon", "long"], Kind::Angle),
     rule("CG", &["centreofgravity", "centerofgravity", "cg", "cgpercentmac"], Kind::Percent),

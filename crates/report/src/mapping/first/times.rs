@@ -7,7 +7,7 @@ const SPREADSHEET_DAY_0: &str = "1899-12-30T00:00:00Z";
 /// Days that spreadsheets count to 1980 and to 2100.
 const SPREADSHEET_DAYS: core::ops::Range<f64> = 29_221.0..73_051.0;
 
-const TIME_NAMES: [&str; 10] = [
+const TIME_NAMES: [&str; 11] = [
     "timestamp",
     "datetime",
     "utcdatetime",
@@ -18,6 +18,7 @@ const TIME_NAMES: [&str; 10] = [
     "t",
     "seconds",
     "flighttime",
+    "times",
 ];
 
 impl Columns {
