@@ -117,7 +117,26 @@ fn of_file(text: &str) -> Result<NamedCriteria, String> {
         }
         digest = fnv(digest, limit.to_bits());
     }
+    check_finds(&limits)?;
     Ok(NamedCriteria { name: format!("{}#{:08x}", file.name, digest >> 32), limits })
+}
+
+/// Refuses limits by which no recording has a segment: a run of them would end well and learn nothing.
+fn check_finds(limits: &TrimCriteria) -> Result<(), String> {
+    let (piece_s, segment_s) = (limits.piece_maximum_s, limits.segment_minimum_s);
+    let nothing = "no recording has a segment by it";
+    if limits.outlier_standard_deviations <= 0.0 {
+        return Err(format!("outlier_standard_deviations: 0, expected more than 0: {nothing}"));
+    }
+    if piece_s <= 0.0 {
+        return Err(format!("piece_maximum_s: 0, expected more than 0: {nothing}"));
+    }
+    if segment_s > piece_s || segment_s.is_infinite() {
+        return Err(format!(
+            "segment_minimum_s: {segment_s}, expected a time up to piece_maximum_s, {piece_s}: {nothing}"
+        ));
+    }
+    Ok(())
 }
 
 /// Fowler, Noll, Vo: FNV-1a of 64 bits (RFC 9923).
@@ -164,6 +183,11 @@ mod tests {
             ("10,", "-1,", "ground_speed_kt: -1"),
             ("ground_speed_kt", "ground_speed", "ground_speed"),
             ("format: 1", "format: 2", "expected format 1"),
+            ("drift_deg: inf", "piece_maximum_s: 0", "piece_maximum_s: 0, expected more"),
+            ("drift_deg: inf", "outlier_standard_deviations: 0", "expected more than 0"),
+            ("drift_deg: inf", "segment_minimum_s: inf", "up to piece_maximum_s, 600"),
+            ("drift_deg: inf", "segment_minimum_s: 601", "up to piece_maximum_s, 600"),
+            ("drift_deg: inf", "segment_minimum_s: 600", ""),
         ] {
             let read = of_file(&FILE.replace(from, to));
             if reason.is_empty() {

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::StoredTail;
 use pipeline::folder_state;
-use pipeline::learnt_flights::KnownFlight;
+use pipeline::learnt_flights::{self, KnownFlight};
 
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
@@ -151,6 +151,22 @@ impl Folder {
             Some(entry) => flights_of(&self.path, &self.state, tail, entry),
             None => Ok(Vec::new()),
         }
+    }
+
+    /// The same as the file has them, whatever its SHA-256: for a look at every tail.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub(crate) fn flights_unchecked(&self, tail: &str) -> Result<Vec<KnownFlight>, Failure> {
+        let Some(entry) = self.state.tails.get(tail) else { return self.flights(tail) };
+        let path = self.path.join(&entry.flights.file);
+        let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
+        learnt_flights::read(tail, &bytes).map_err(|reason| Failure::bad_file(&path, reason))
+    }
+
+    /// Where the folder is written.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// A tail's model, segments and flights.

@@ -64,7 +64,8 @@ impl KnownFlights {
         for of_flight in segments.chunk_by(|one, other| one.identity == other.identity) {
             let identity = &of_flight[0].identity;
             let key = (identity.start, identity.flight.clone());
-            if let (Some(index), Some(mark)) = (self.by_identity.get(&key), mark(of_flight)) {
+            if let (Some(index), Some(mark)) = (self.by_identity.get(&key), samples_mark(of_flight))
+            {
                 self.by_segments.insert(mark, *index);
             }
         }
@@ -73,7 +74,7 @@ impl KnownFlights {
     /// One more.
     pub fn add(&mut self, flight: &FlightRead) {
         let index = self.flights.len();
-        if let Some(mark) = mark(&flight.reduced.segments) {
+        if let Some(mark) = samples_mark(&flight.reduced.segments) {
             let first = self.by_segments.entry(mark).or_insert(index);
             if self.replaced.contains(first) {
                 *first = index;
@@ -141,7 +142,7 @@ impl KnownFlights {
                 })
                 .map(|&index| Relation::SameHours(index)),
         );
-        let same_samples = mark(&flight.reduced.segments)
+        let same_samples = samples_mark(&flight.reduced.segments)
             .and_then(|mark| self.by_segments.get(&mark))
             .filter(known)
             .filter(|index| found.iter().all(|relation| relation.known() != Some(**index)));
@@ -192,9 +193,9 @@ fn length(start: Timestamp, end: Timestamp) -> Duration {
     end.duration_since(start).try_into().unwrap_or(Duration::ZERO)
 }
 
-/// What the same samples have in common whatever name and START they are given: a hash of the bits of the segments'
-/// means. Of this program's run only: it is not kept.
-fn mark(segments: &[Segment]) -> Option<u64> {
+/// What the same samples have in common whatever tail, name and START they are given: a hash of the bits of the segments'
+/// means. Of this program's run only: it is not kept. `None` without a segment.
+pub fn samples_mark(segments: &[Segment]) -> Option<u64> {
     if segments.is_empty() {
         return None;
     }

@@ -4,6 +4,7 @@
 //! tail's flights in the order of flying. What a tail comes to is written to the folder's waiting room at once, so that
 //! memory holds the tails in work and nothing of those that are done.
 
+mod other_tails;
 mod results;
 mod tail;
 
@@ -59,6 +60,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     check_refused(&refused, files, arguments.reports.strict, by_model.is_empty())?;
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
     let mut folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
+    results::check_own(&folder)?;
     let mut starts = Starts::new(law, &arguments.reports.criteria.name);
     let tails = choose(by_model, &mut starts, &folder, &mut refused);
     let tails = begun_alike(tails, arguments, &folder, &mut refused)?;
@@ -92,6 +94,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     check_refused(&refused, files, arguments.reports.strict, usable == 0)?;
     let copies = outcomes.iter().map(|outcome| outcome.copies).sum();
     warn_of_copies(copies, outcomes.iter_mut().find_map(|outcome| outcome.first_copy.take()));
+    other_tails::warn_of_twins(&arguments.output, &folder, &outcomes);
     let summary = results::write(&run, &refused, &outcomes)?;
     // One page holds every tail: pages that an earlier run or program gave each of them would show old figures.
     let pages: Vec<String> = if run.on_one_page {

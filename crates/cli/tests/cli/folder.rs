@@ -420,6 +420,8 @@ fn forgetting_the_last_flight_removes_the_tail() {
     cruisefit(&["forget", output.to_str().unwrap(), "--tail", "SIM-01", "--flight", "0001"])
         .expect(0);
     assert!(!output.join("models/SIM-01.ron").exists());
+    // It is a folder of `adapt` all the same.
+    cruisefit(&["monitor", output.to_str().unwrap()]).expect(2).says("holds no tail");
     adapt(&model, &output, &[report(2)], &[]).expect(0);
     assert_eq!(flights_of(&output), ["0002"]);
 }
@@ -537,6 +539,63 @@ fn what_a_command_did_not_make_is_not_replaced() {
     .expect(2)
     .says("was not made by this command");
     init(&learnt, &["--force"]).expect(0);
+}
+
+/// A page or a document of somebody's own is not that of a run.
+#[test]
+fn pages_of_others_are_not_replaced() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    for (name, text) in [("report.html", "mine"), ("summary.json", "{\"mine\": 1}")] {
+        let own = scratch.path().join(name.split('.').next().unwrap());
+        std::fs::create_dir(&own).unwrap();
+        std::fs::write(own.join(name), text).unwrap();
+        adapt(&model, &own, &[report(1)], &[]).expect(2).says(name).says("was not made by this");
+        assert_eq!(bytes_below(&own).len(), 1);
+        assert_eq!(std::fs::read_to_string(own.join(name)).unwrap(), text);
+    }
+    // What a run left that learnt nothing is its own.
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[report(1)], &[]).expect(0);
+    for file in ["models", "segments", "flights", "deviations"] {
+        std::fs::remove_dir_all(output.join(file)).unwrap();
+    }
+    std::fs::remove_file(output.join("STATE.ron")).unwrap();
+    adapt(&model, &output, &[report(1)], &[]).expect(0);
+}
+
+/// A registration that was corrected: the flight is on the old tail still.
+#[test]
+fn a_flight_on_two_tails_is_said_with_what_mends_it() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    let tail = [("SIM-01", "SIM-02")];
+    let corrected = changed(scratch.path(), 2, "0002.txt", &tail);
+    let other = changed(scratch.path(), 3, "0003.txt", &tail);
+    adapt(&model, &output, &reports(1..=3), &[]).expect(0);
+    let ran = adapt(&model, &output, &[corrected.clone()], &[]).expect(0);
+    ran.says("flight 0002 of tail SIM-01 and flight 0002 of tail SIM-02");
+    ran.says("forget");
+    ran.says("--tail SIM-01 --flight 0002");
+    // Said in the night in which it is learnt, of that flight alone.
+    let silent = adapt(&model, &output, &[corrected.clone()], &[]).expect(0);
+    assert!(!silent.stderr.contains("learnt twice"), "{}", silent.stderr);
+    // Two tails in one run, too.
+    let at_once = scratch.path().join("at_once");
+    let both = adapt(&model, &at_once, &[report(3), other], &[]).expect(0);
+    both.says("flight 0003 of tail SIM-01 and flight 0003 of tail SIM-02");
+    // The same hours alone are no sign: other samples.
+    let fuller = [("SIM-01", "SIM-03"), ("ZFW", "ZFW ")];
+    let mut text = std::fs::read_to_string(changed(scratch.path(), 2, "f.txt", &fuller)).unwrap();
+    let load = text.lines().find(|line| line.starts_with("ZFW")).unwrap().to_owned();
+    let word = load.split_whitespace().nth(1).unwrap();
+    let heavier = format!("{}", word.parse::<f64>().unwrap() + 100.0);
+    text = text.replacen(&load, &load.replace(word, &heavier), 1);
+    let same_hours = scratch.path().join("same_hours.txt");
+    std::fs::write(&same_hours, text).unwrap();
+    let silent = adapt(&model, &output, &[same_hours], &[]).expect(0);
+    assert!(!silent.stderr.contains("learnt twice"), "{}", silent.stderr);
 }
 
 #[cfg(unix)]

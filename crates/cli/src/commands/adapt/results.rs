@@ -7,7 +7,34 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 use super::Run;
 use super::tail::{TailOutcome, page_file};
 use crate::failure::{Failure, RefusedReport};
+use crate::files::outputs::{check_replaceable, would_lose};
+use crate::folder::Folder;
 use crate::terminal::neutral;
+
+const SUMMARY: &str = "summary.json";
+const PAGE: &str = "report.html";
+
+/// Refuses to replace a summary or page that `adapt` did not make, in a folder that it has not begun.
+///
+/// # Errors
+/// A file that would be lost.
+pub(super) fn check_own(folder: &Folder) -> Result<(), Failure> {
+    if !folder.tails().is_empty() {
+        return Ok(());
+    }
+    // What a page begins with, of whatever version.
+    for (name, mark) in [(SUMMARY, "cruisefit.summary/"), (PAGE, "content=\"cruisefit ")] {
+        let path = folder.path().join(name);
+        let is_own = |text: &str| text.contains(mark);
+        match check_replaceable(&path, false, &[], is_own) {
+            Err(Failure::WouldReplace { .. }) => {
+                would_lose(&path, "a file that was not made by this command")?;
+            }
+            checked => checked?,
+        }
+    }
+    Ok(())
+}
 
 /// Writes both to the folder's waiting room.
 ///
@@ -32,7 +59,7 @@ pub(super) fn write(
         },
         tails: tails.collect(),
     };
-    run.folder.stage_unnamed("summary.json", &summary.to_json())?;
+    run.folder.stage_unnamed(SUMMARY, &summary.to_json())?;
     let title = "Adaptation of performance models to cruise reports";
     let page = if run.on_one_page {
         let sections: Vec<&page::Section> =
@@ -46,7 +73,7 @@ pub(super) fn write(
             .collect();
         page::fleet_report(&summary, &links, title)
     };
-    run.folder.stage_unnamed("report.html", neutral(&page).as_bytes())?;
+    run.folder.stage_unnamed(PAGE, neutral(&page).as_bytes())?;
     Ok(summary)
 }
 

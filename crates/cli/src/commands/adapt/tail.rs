@@ -22,6 +22,7 @@ use pipeline::segments_table;
 use rayon::prelude::*;
 
 use super::Run;
+use super::other_tails::NewFlight;
 use crate::commands::tell_serious;
 use crate::failure::{Failure, RefusedReport, refused_of};
 use crate::files::file_stem_of_tail;
@@ -53,6 +54,8 @@ pub(super) struct TailOutcome {
     pub(super) costs: Option<CriteriaCosts>,
     /// The first copy, and what it is a copy of.
     pub(super) first_copy: Option<(String, String)>,
+    /// Flights that it learns in this run, to be looked for under other tails.
+    pub(super) new_flights: Vec<NewFlight>,
 }
 
 impl TailOutcome {
@@ -246,12 +249,14 @@ impl Run<'_> {
         } else {
             RemainderChoice::Learn
         };
+        let new = sorting.new.iter().filter_map(|(flight, _)| NewFlight::of(flight)).collect();
         let found = adaptation::learn(start, &outcome.tail, sorting, stored, remainder)
             .map_err(|error| not_correctable(&error))?;
         outcome.refused = found.refused;
         match found.learnt {
             Some(learnt) => {
                 outcome.flights_new = found.flights_new;
+                outcome.new_flights = new;
                 self.store(&start.begun, learnt, found.notes, outcome)
             }
             None => self.rest(outcome),

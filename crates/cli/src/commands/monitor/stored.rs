@@ -76,10 +76,13 @@ impl Tails {
             None => models_below(&self.folder)?.into_iter().map(Place::Model).collect(),
         };
         if places.is_empty() {
-            return Err(Failure::bad_file(
-                &self.folder,
-                "found no model in models/, expected a folder that `cruisefit adapt` wrote",
-            ));
+            let reason = match &self.state {
+                Some(_) => {
+                    "the folder of `cruisefit adapt` holds no tail: none has learnt a flight, or all were forgotten"
+                }
+                None => "found no model in models/, expected a folder that `cruisefit adapt` wrote",
+            };
+            return Err(Failure::bad_file(&self.folder, reason));
         }
         Ok(places)
     }
