@@ -15,7 +15,7 @@ mod dated;
 use dated::{changes, nearest};
 
 /// A change that the flights show.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// First flight after it.
     pub first_flight: usize,
@@ -29,6 +29,19 @@ pub struct Change {
     pub step_percent: Estimate,
     /// The event that it belongs to, by its place among the events given.
     pub event: Option<usize>,
+    /// Other events within the interval that could be it as well.
+    pub other_events: Vec<usize>,
+}
+
+/// What a recorded event can have to do with a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bearing {
+    /// Nothing: an exchange of another engine.
+    None,
+    /// It may have changed the series.
+    Possible,
+    /// The same, rather than others about the same time: an exchange of the engine that the series is of.
+    Likely,
 }
 
 /// What an event did.
@@ -66,13 +79,38 @@ impl History {
     /// that the flights would show by themselves.
     #[must_use]
     pub fn fit(series: &Series, events: &[Timestamp], beliefs: &ChangeBeliefs) -> Option<Self> {
+        let events: Vec<_> = events.iter().map(|time| (*time, Bearing::Possible)).collect();
+        Self::fit_to_events(series, &events, beliefs)
+    }
+
+    /// The same where of each event is known what it can have to do with the series: one without a bearing makes no change more
+    /// probable and has none belong to it; its effect is measured all the same.
+    #[must_use]
+    pub fn fit_to_events(
+        series: &Series,
+        events: &[(Timestamp, Bearing)],
+        beliefs: &ChangeBeliefs,
+    ) -> Option<Self> {
         let noise = Noise::estimate(series);
         let weights = noise.weights(series);
-        let at_flight: Vec<usize> = events.iter().map(|time| series.first_from(*time)).collect();
-        let asked = Asked::new(series, &weights, &at_flight, *beliefs);
+        let at_flight: Vec<usize> =
+            events.iter().map(|(time, _)| series.first_from(*time)).collect();
+        let candidates: Vec<Candidate> = at_flight
+            .iter()
+            .zip(events)
+            .enumerate()
+            .filter(|(_, (_, (_, bearing)))| *bearing != Bearing::None)
+            .map(|(event, (flight, (_, bearing)))| Candidate {
+                event,
+                flight: *flight,
+                is_likely: *bearing == Bearing::Likely,
+            })
+            .collect();
+        let flights: Vec<usize> = candidates.iter().map(|candidate| candidate.flight).collect();
+        let asked = Asked::new(series, &weights, &flights, *beliefs);
         let mut changes = asked.changes();
         for change in &mut changes {
-            belong(change, &at_flight);
+            belong(change, &candidates);
         }
         changes.dedup_by_key(|change| change.first_flight);
         let levels = levels_between(&mut changes, series, &weights, beliefs)?;
@@ -237,16 +275,28 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// A change within whose interval an event lies is that event's: the nearest one.
-fn belong(change: &mut Change, events: &[usize]) {
-    let near = events
+/// An event that a change may belong to.
+struct Candidate {
+    event: usize,
+    /// First flight at or after it.
+    flight: usize,
+    is_likely: bool,
+}
+
+/// A change within whose interval an event lies is that event's: the nearest one, but rather a likely one.
+fn belong(change: &mut Change, candidates: &[Candidate]) {
+    let mut near: Vec<&Candidate> = candidates
         .iter()
-        .enumerate()
-        .filter(|(_, flight)| (change.earliest..=change.latest).contains(flight))
-        .min_by_key(|(event, flight)| (flight.abs_diff(change.first_flight), *event));
-    if let Some((event, flight)) = near {
-        change.event = Some(event);
-        change.first_flight = *flight;
+        .filter(|candidate| (change.earliest..=change.latest).contains(&candidate.flight))
+        .collect();
+    near.sort_by_key(|candidate| {
+        let distance = candidate.flight.abs_diff(change.first_flight);
+        (!candidate.is_likely, distance, candidate.event)
+    });
+    if let Some((first, others)) = near.split_first() {
+        change.event = Some(first.event);
+        change.first_flight = first.flight;
+        change.other_events = others.iter().map(|candidate| candidate.event).collect();
     }
 }
 

@@ -259,7 +259,7 @@ fn changes(tail: &TailDocument) -> Markup {
                         (figure(&change.step_percent)) " % since " (day(&change.since)) " (95 % interval "
                         (day(&change.since_ci95[0])) " to " (day(&change.since_ci95[1])) "), probability "
                         (format!("{:.2}", change.probability))
-                        @if let Some(event) = &change.event { ", " (event) }
+                        @if let Some(event) = change.event_in_words() { ", " (event) }
                     }
                 }
                 @for event in &tail.events {

@@ -86,6 +86,30 @@ fn events_between_the_same_flights_are_measured_together() {
     assert!((effect.value - 100.0 * 1.015_f64.ln()).abs() < 1.5 * effect.half_width());
 }
 
+/// Oracle: what was planted, on engine 2 alone, on which no wash of the airframe acts, whichever is given first.
+#[test]
+fn a_change_of_one_engine_is_not_a_wash() {
+    for kinds in [["wash", "engine_change"], ["engine_change", "wash"]] {
+        let tail = changed(&kinds);
+        let of_all = tail.changes.iter().find(|change| change.engine.is_none()).unwrap();
+        assert_eq!(of_all.event.as_deref(), Some("engine_change"));
+        assert_eq!(of_all.other_events, ["wash"]);
+        let of_engine = tail.changes.iter().find(|change| change.engine == Some(2)).unwrap();
+        assert_eq!(of_engine.event.as_deref(), Some("engine_change"));
+        // A wash changes every engine alike: this step is twice what all together show.
+        assert!(of_engine.other_events.is_empty(), "{:?}", of_engine.other_events);
+        let document = MonitorDocument::new(vec![tail], Vec::new());
+        let printed = text(&document, Rows::Tails);
+        assert!(printed.contains("engine_change (or wash, in the same interval)"), "{printed}");
+    }
+    // Neither a wash alone explains it, nor an exchange of engine 1.
+    for kind in ["wash", "exchange of engine 1"] {
+        let tail = changed(&[kind]);
+        let of_engine = tail.changes.iter().find(|change| change.engine == Some(2)).unwrap();
+        assert_eq!(of_engine.event, None, "{kind}");
+    }
+}
+
 #[test]
 fn the_text_fits_a_terminal_and_tables_have_a_row_each() {
     let tail = changed(&["engine_change", "wash"]);

@@ -44,6 +44,7 @@ fn change(probabilities: &[f64], first_flight: usize, near: Range<usize>) -> Cha
         probability: sum.min(1.0),
         step_percent: Estimate { value: 0.0, deviation: 0.0 },
         event: None,
+        other_events: Vec::new(),
     }
 }
 

@@ -156,6 +156,21 @@ pub struct ChangeDocument {
     pub step_percent: Figure,
     /// Kind of the event that it belongs to.
     pub event: Option<String>,
+    /// Kinds of other events within the interval, to which it could belong as well.
+    #[serde(default)]
+    pub other_events: Vec<String>,
+}
+
+impl ChangeDocument {
+    /// The event that it belongs to, and those to which it could belong as well, in words; `None` without one.
+    #[must_use]
+    pub fn event_in_words(&self) -> Option<String> {
+        let event = self.event.as_ref()?;
+        Some(match &self.other_events[..] {
+            [] => event.clone(),
+            others => format!("{event} (or {}, in the same interval)", others.join(", ")),
+        })
+    }
 }
 
 /// An event.

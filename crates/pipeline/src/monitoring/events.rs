@@ -3,6 +3,7 @@
 use flight::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
+use monitor::Bearing;
 use serde::{Deserialize, Serialize};
 
 /// An event.
@@ -17,6 +18,67 @@ pub struct Event {
     pub kind: String,
     /// In the operator's words; may be empty.
     pub note: String,
+}
+
+/// Words of kinds that change the airframe, or what is known of it, and no single engine.
+const OF_AIRFRAME: [&str; 12] = [
+    "wash", "polish", "paint", "weighing", "retrofit", "winglet", "rigging", "seal", "flap",
+    "slat", "cabin", "interior",
+];
+/// Words of kinds and notes that change engines.
+const OF_ENGINES: [&str; 4] = ["engine", "compressor", "turbine", "nacelle"];
+
+impl Event {
+    /// What the event can have to do with the fuel flow of one engine (from 1): nothing where it names others ("engine 2" in kind
+    /// or note); it is likely where it is of engines.
+    #[must_use]
+    pub fn bearing_on_engine(&self, engine: usize) -> Bearing {
+        let named = engines_named(&self.text());
+        match self.names_engines() {
+            _ if !named.is_empty() && !named.contains(&engine) => Bearing::None,
+            true => Bearing::Likely,
+            false => Bearing::Possible,
+        }
+    }
+
+    /// Whether the event is known to be of the airframe: it changes the fuel flow of every engine by as much.
+    #[must_use]
+    pub fn is_of_airframe(&self) -> bool {
+        let kind = self.kind.to_lowercase();
+        OF_AIRFRAME.iter().any(|word| kind.contains(word)) && !self.names_engines()
+    }
+
+    pub(super) fn names_engines(&self) -> bool {
+        let text = self.text();
+        OF_ENGINES.iter().any(|word| text.contains(word)) || !engines_named(&text).is_empty()
+    }
+
+    fn text(&self) -> String {
+        format!("{} {}", self.kind, self.note).to_lowercase()
+    }
+}
+
+/// The numbers behind a word for engines: `engine 2`, `engines 1 and 2`, `ENG#1`, `engine_2_change`.
+fn engines_named(text: &str) -> Vec<usize> {
+    /// No aircraft has more: a longer number is that of a part.
+    const MOST: usize = 8;
+    let words =
+        text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty());
+    let (mut named, mut is_behind) = (Vec::new(), false);
+    for word in words {
+        let number = word.trim_start_matches("engines").trim_start_matches("engine");
+        let number = number.trim_start_matches("eng");
+        let is_word = number.len() < word.len();
+        let found = number.parse().ok().filter(|engine| (1..=MOST).contains(engine));
+        match found {
+            Some(engine) if is_word || is_behind => {
+                named.push(engine);
+                is_behind = true;
+            }
+            _ => is_behind = (is_word && number.is_empty()) || (is_behind && word == "and"),
+        }
+    }
+    named
 }
 
 /// An instant as RFC 3339 text.
@@ -147,6 +209,35 @@ mod tests {
         let text = "date,tail,kind,note\n2026-01-02,T,wash,\"un\n2026-01-03,T,wash,b\n";
         let error = read_events(text.as_bytes()).unwrap_err();
         assert!(error.to_string().starts_with("line 2: a quote opens"), "{error}");
+    }
+
+    #[test]
+    fn what_an_event_can_change_on_an_engine() {
+        let event = |kind: &str, note: &str| Event {
+            time: Timestamp::UNIX_EPOCH,
+            tail: "T".to_owned(),
+            kind: kind.to_owned(),
+            note: note.to_owned(),
+        };
+        for (kind, note, of_first, of_second, of_airframe) in [
+            ("wash", "", Bearing::Possible, Bearing::Possible, true),
+            ("wash", "compressors of both", Bearing::Likely, Bearing::Likely, false),
+            ("engine_change", "", Bearing::Likely, Bearing::Likely, false),
+            ("engine_change", "engine 2, serial 1", Bearing::None, Bearing::Likely, false),
+            ("exchange", "ENG#1", Bearing::Likely, Bearing::None, false),
+            ("engine_2_change", "", Bearing::None, Bearing::Likely, false),
+            ("hot section", "engines 1 and 2", Bearing::Likely, Bearing::Likely, false),
+            ("engine_wash", "hangar 3", Bearing::Likely, Bearing::Likely, false),
+            ("meters", "", Bearing::Possible, Bearing::Possible, false),
+        ] {
+            let event = event(kind, note);
+            let bearings = [1, 2].map(|engine| event.bearing_on_engine(engine));
+            assert_eq!(
+                (bearings, event.is_of_airframe()),
+                ([of_first, of_second], of_airframe),
+                "{event:?}"
+            );
+        }
     }
 
     #[test]

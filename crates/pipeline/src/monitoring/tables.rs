@@ -205,6 +205,7 @@ fn changes(document: &MonitorDocument) -> Columns {
     columns.number("probability", rows.iter().map(|(_, change)| Some(change.probability)));
     figure(&mut columns, "step_percent", &rows, |(_, change)| Some(change.step_percent));
     columns.text("event", rows.iter().map(|(_, change)| change.event.clone().unwrap_or_default()));
+    columns.text("other_events", rows.iter().map(|(_, change)| change.other_events.join(" ")));
     columns
 }
 

@@ -6,8 +6,8 @@ use flight::Timestamp;
 use monitor::airbus;
 use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
 use monitor::{
-    AlertRule, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Noise, Series,
-    SeriesError, months, weighted_mean_percent, years_between,
+    AlertRule, Bearing, Change, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Noise,
+    Series, SeriesError, months, weighted_mean_percent, years_between,
 };
 
 use super::deviations::{BeforeLearning, TailDeviations};
@@ -90,6 +90,12 @@ struct EngineSeries {
 }
 
 impl EngineSeries {
+    /// Whether a change of an engine belongs to this event.
+    fn show(&self, event: usize) -> bool {
+        let mut changes = self.of_each.iter().flat_map(|(_, history)| &history.changes);
+        changes.any(|change| change.event == Some(event))
+    }
+
     /// Which of its flights are among these of all.
     fn range(&self, of_all: &Range<usize>) -> Range<usize> {
         let place = |flight: usize| self.flights.partition_point(|known| *known < flight);
@@ -101,7 +107,7 @@ impl EngineSeries {
 fn engines_of(
     all: &[&MonitoredFlight],
     level_percent: f64,
-    events: &[Timestamp],
+    events: &[&Event],
 ) -> Result<EngineSeries, SeriesError> {
     let count = all.iter().map(|flight| flight.engines.len()).max().unwrap_or(0);
     let beliefs = ChangeBeliefs::of_2026().of_an_engine(count);
@@ -111,7 +117,9 @@ fn engines_of(
     for engine in 0..count {
         let shown = flights.iter().map(|&place| all[place].engines[engine].raised(level_percent));
         let series = Series::new(shown.collect())?;
-        let history = History::fit(&series, events, &beliefs);
+        let bearing = |event: &&Event| (event.time, event.bearing_on_engine(engine + 1));
+        let events: Vec<_> = events.iter().map(bearing).collect();
+        let history = History::fit_to_events(&series, &events, &beliefs);
         of_each.extend(history.map(|history| (series, history)));
     }
     Ok(EngineSeries { flights, of_each })
@@ -129,13 +137,19 @@ impl<'a> MonitoredTail<'a> {
     ) -> Result<Option<Self>, SeriesError> {
         let beliefs = ChangeBeliefs::of_2026();
         let events: Vec<&Event> = events.iter().filter(|event| event.tail == tail).collect();
-        let times: Vec<Timestamp> = events.iter().map(|event| event.time).collect();
         let flights: Vec<&MonitoredFlight> =
             deviations.flights.iter().filter(|flight| flight.learnt.is_some()).collect();
         let level = deviations.level_percent;
         let learnt = flights.iter().filter_map(|flight| Some(flight.learnt?.raised(level)));
         let series_of_all = Series::new(learnt.collect())?;
-        let Some(history) = History::fit(&series_of_all, &times, &beliefs) else {
+        // First engine by engine: what one of them shows of its own is no wash of the airframe.
+        let engines = engines_of(&flights, level, &events)?;
+        let bearing = |(place, event): (usize, &&Event)| {
+            let is_shown = event.names_engines() && engines.show(place);
+            (event.time, if is_shown { Bearing::Likely } else { Bearing::Possible })
+        };
+        let bearings: Vec<_> = events.iter().enumerate().map(bearing).collect();
+        let Some(history) = History::fit_to_events(&series_of_all, &bearings, &beliefs) else {
             return Ok(None);
         };
         let known: Option<Vec<FlightDeviation>> =
@@ -144,7 +158,6 @@ impl<'a> MonitoredTail<'a> {
             let weights = Noise::estimate(&series).weights(&series);
             (series, weights)
         });
-        let engines = engines_of(&flights, level, &times)?;
         let reference = deviations.reference;
         Ok(Some(Self {
             tail,
@@ -333,18 +346,33 @@ impl<'a> MonitoredTail<'a> {
         history: &History,
     ) -> Vec<ChangeDocument> {
         let start = |flight: usize| series.flights()[flight].time().to_string();
-        history
-            .changes
-            .iter()
-            .map(|change| ChangeDocument {
+        let kind = |event: usize| self.events[event].kind.clone();
+        let document = |change: &Change| {
+            let near = change.event.into_iter().chain(change.other_events.iter().copied());
+            let may_be = |event: &usize| {
+                engine.is_none() || self.changes_every_engine_so(*event, &change.step_percent)
+            };
+            let mut events = near.filter(may_be).map(kind);
+            ChangeDocument {
                 engine,
                 since: start(change.first_flight),
                 since_ci95: [start(change.earliest), start(change.latest)],
                 probability: change.probability,
                 step_percent: change.step_percent.into(),
-                event: change.event.map(|event| self.events[event].kind.clone()),
-            })
-            .collect()
+                event: events.next(),
+                other_events: events.collect(),
+            }
+        };
+        history.changes.iter().map(document).collect()
+    }
+
+    /// Whether an event can have changed an engine's fuel flow by this step: one of the airframe changes every engine as it
+    /// changes all together, which a change of one engine alone is not.
+    fn changes_every_engine_so(&self, event: usize, step_percent: &Estimate) -> bool {
+        let of_all = self.history.events[event].effect_percent;
+        let differs =
+            |all: Estimate| (all.value - step_percent.value).abs() > step_percent.half_width95();
+        !self.events[event].is_of_airframe() || !of_all.is_some_and(differs)
     }
 
     fn event_documents(&self) -> Vec<EventDocument> {

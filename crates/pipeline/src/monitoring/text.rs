@@ -172,8 +172,8 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
             date(&change.since_ci95[1]),
             change.probability,
         );
-        if let Some(kind) = &change.event {
-            let _ = writeln!(text, "  with the recorded event: {kind}");
+        if let Some(event) = change.event_in_words() {
+            let _ = writeln!(text, "  with the recorded event: {event}");
         }
     }
     for event in &tail.events {
