@@ -121,6 +121,95 @@ const MORE_SLIPS: [Slip; 11] = [
     ("GSPD: clipped", clipped, "channel-saturated"),
 ];
 
+/// The findings of three flights with a slip: code, message, likely cause and remedy of each.
+fn told(slip: fn(&str) -> String) -> Vec<[String; 4]> {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let json = folder.path().join("check.json");
+    check(&planted(folder.path(), slip), Some(&model), &json);
+    let document = document(&json);
+    let word = |finding: &serde_json::Value, key: &str| finding[key].as_str().unwrap().to_owned();
+    let findings = document["findings"].as_array().unwrap().iter();
+    let keys = ["code", "message", "likely_cause", "remedy"];
+    findings.map(|finding| keys.map(|key| word(finding, key))).collect()
+}
+
+/// Two engines: neither is named unless fuel used states which one; it does where one meter reads twice as much.
+#[test]
+fn the_wrong_one_of_two_engines_is_named_only_where_the_data_state_it() {
+    let of = |slip| {
+        let found = told(slip);
+        let asymmetry = found.into_iter().find(|[code, ..]| code == "engine-asymmetry");
+        asymmetry.unwrap_or_else(|| panic!("no asymmetry"))
+    };
+    let [_, message, _, remedy] = of(|text| column(text, "WF(1)", |flow| 2.0 * flow));
+    assert!(message.starts_with("engine 1 burns +"), "{message}");
+    assert!(remedy.contains("the meter of engine 1"), "{remedy}");
+    let [_, message, _, remedy] = of(|text| column(text, "WF(2)", |flow| 2.0 * flow));
+    assert!(message.starts_with("engine 2 burns +"), "{message}");
+    assert!(remedy.contains("the meter of engine 2"), "{remedy}");
+    let [_, message, _, remedy] = of(|text| column(text, "WF(2)", |flow| (1.08 * flow).round()));
+    assert!(message.contains("which of the two it is these data do not state"), "{message}");
+    assert!(remedy.contains("both engines"), "{remedy}");
+}
+
+/// A calibrated airspeed in the place of the true one: by the formula of the standard atmosphere, not by half.
+fn calibrated(text: &str) -> String {
+    let names = text.lines().position(|line| line.starts_with("TIME")).unwrap();
+    let header: Vec<&str> = text.lines().nth(names).unwrap().split_whitespace().collect();
+    let place = |name: &str| header.iter().position(|word| *word == name).unwrap();
+    let (altitude, mach, speed) = (place("ALT"), place("MACH"), place("VTAS"));
+    let lines = text.lines().enumerate().map(|(index, line)| {
+        if index < names + 2 {
+            return line.to_owned();
+        }
+        let mut words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+        let number = |place: usize| words[place].parse::<f64>().unwrap();
+        // Above 11 km, by hand: 226.32 hPa and 6341.6 m of scale height; 1013.25 hPa and 661.4786 kt at sea level.
+        let metres = 0.3048 * number(altitude);
+        let pressure_hpa = if metres > 11_000.0 {
+            226.32 * f64::exp(-(metres - 11_000.0) / 6341.6)
+        } else {
+            1013.25 * (1.0 - 2.25577e-5 * metres).powf(5.25588)
+        };
+        let impact_hpa = pressure_hpa * ((1.0 + 0.2 * number(mach).powi(2)).powf(3.5) - 1.0);
+        let squared = 5.0 * ((impact_hpa / 1013.25 + 1.0).powf(1.0 / 3.5) - 1.0);
+        words[speed] = format!("{:.1}", 661.4786 * squared.sqrt());
+        words.join(" ")
+    });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+#[test]
+fn a_calibrated_airspeed_is_one_slip_and_no_wrong_unit_of_anything() {
+    let found = told(calibrated);
+    let mut of_speed = found.iter().filter(|[code, ..]| code == "true-airspeed-against-mach");
+    assert!(of_speed.clone().count() > 0, "{found:?}");
+    assert!(of_speed.all(|[.., cause, _]| cause == "VTAS holds calibrated airspeed"), "{found:?}");
+    for [code, _, cause, remedy] in &found {
+        assert!(code != "wind-impossible", "{found:?}");
+        assert!(!cause.contains("declared as") && !remedy.contains("unit lb"), "{found:?}");
+    }
+}
+
+/// Any heading that is 15 degrees off: the drift angle's sign is right, whatever the drift was.
+#[test]
+fn a_magnetic_heading_does_not_turn_the_drift_round() {
+    for slip in [
+        (|text| column(text, "HDG", |heading| (heading + 15.0).rem_euclid(360.0)))
+            as fn(&str) -> String,
+        |text| column(text, "HDG", |heading| (heading - 15.0).rem_euclid(360.0)),
+        |text| column(text, "HDG", |heading| (heading + 8.0).rem_euclid(360.0)),
+    ] {
+        let found = told(slip);
+        assert!(found.iter().any(|[code, ..]| code == "heading-against-track"), "{found:?}");
+        assert!(found.iter().all(|[code, ..]| code != "drift-sign"), "{found:?}");
+    }
+    let found = told(|text| column(text, "DRIFT", |drift| -drift));
+    assert!(found.iter().any(|[code, ..]| code == "drift-sign"), "{found:?}");
+    assert!(found.iter().all(|[code, ..]| code != "heading-against-track"), "{found:?}");
+}
+
 #[test]
 fn every_kind_of_finding_is_planted() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,7 @@
 //! Airspeeds, temperature and altitude against each other.
 
+use std::borrow::Cow;
+
 use atmos::{airspeed, isa, temperature};
 use flight::{Assumption, Report, Severity};
 use units::convert::KELVIN_AT_ZERO_CELSIUS;
@@ -7,6 +9,9 @@ use units::{Mach, PressureAltitude, Temperature};
 
 use super::slips::{self, FEET_PER_METER, SPEED};
 use super::{Draft, mean};
+
+/// Code of a true airspeed that Mach number and SAT contradict.
+pub(super) const TRUE_AIRSPEED: &str = "true-airspeed-against-mach";
 
 /// Difference of recorded true airspeed and M·a(SAT) worth a word. A probe 1 K off makes 0.25 %, a Mach number 0.004 off
 /// 0.5 %.
@@ -27,6 +32,24 @@ pub(super) fn check(report: &Report) -> Vec<Draft> {
     // A wrong altitude makes the temperature look wrong too.
     let deviation = if altitude.is_some() { None } else { deviation(&air) };
     [true_airspeed(&air), altitude, deviation].into_iter().flatten().collect()
+}
+
+/// True airspeed of each sample as far as it can be believed: that of Mach number and SAT where the recorded one contradicts both, so
+/// that what is compared with it is not blamed for it.
+pub(super) fn believed_true_airspeed_m_s(report: &Report) -> Cow<'_, [f64]> {
+    let columns = report.columns();
+    let recorded = Cow::Borrowed(&columns.true_airspeed_m_s[..]);
+    let ratio = Means::from_report(report).and_then(|air| air.true_airspeed_ratio);
+    let is_wrong = ratio.is_some_and(|ratio| (ratio - 1.0).abs() > SERIOUS_SHARE);
+    let Some(temperatures_k) = columns.static_air_temperature_k.as_ref().filter(|_| is_wrong)
+    else {
+        return recorded;
+    };
+    let derived = columns.mach.iter().zip(temperatures_k).map(|(mach, temperature_k)| {
+        let temperature = Temperature::kelvin(*temperature_k);
+        airspeed::mach_to_true_airspeed(Mach::new(*mach), temperature).to_meters_per_second()
+    });
+    derived.collect()
 }
 
 /// Means over the report.
@@ -88,7 +111,7 @@ fn true_airspeed(air: &Means) -> Option<Draft> {
     let serious = (ratio - 1.0).abs() > SERIOUS_SHARE;
     Some(Draft {
         severity: if serious { Severity::Serious } else { Severity::Warning },
-        code: "true-airspeed-against-mach",
+        code: TRUE_AIRSPEED,
         size: 100.0 * (ratio - 1.0),
         unit: "%",
         message: format!(
@@ -101,10 +124,15 @@ fn true_airspeed(air: &Means) -> Option<Draft> {
 }
 
 fn explain(air: &Means, ratio: f64) -> (String, String) {
-    if let Some(slip) = slips::find(&SPEED, ratio) {
+    // High up a calibrated airspeed is about half of the true one, as are metres per second of knots: the nearer one is meant.
+    let off_calibrated = (air.true_airspeed_kt / air.calibrated_airspeed_kt - 1.0).abs();
+    let slip = slips::find(&SPEED, ratio).filter(|slip| {
+        off_calibrated > WARNING_SHARE || (ratio / slip.factor - 1.0).abs() < off_calibrated
+    });
+    if let Some(slip) = slip {
         return (format!("VTAS: {}", slip.cause), format!("VTAS: {}", slip.remedy));
     }
-    if (air.true_airspeed_kt / air.calibrated_airspeed_kt - 1.0).abs() < WARNING_SHARE {
+    if off_calibrated < WARNING_SHARE {
         return (
             "VTAS holds calibrated airspeed".to_owned(),
             "map VTAS to true airspeed, or derive it from MACH".to_owned(),

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use flight::Severity;
 use serde::Serialize;
 
-use super::{DataFinding, word};
+use super::{DataFinding, air, book, word};
 use crate::summary::{ReportsSummary, counted};
 
 /// Schema of [`CheckDocument`].
@@ -40,6 +40,7 @@ impl CheckDocument {
     /// Puts findings in order.
     #[must_use]
     pub fn new(reports: ReportsSummary, mut findings: Vec<DataFinding>) -> Self {
+        tell_consequences(&mut findings);
         let key =
             |one: &DataFinding| (one.tail.clone(), one.code, one.start.clone(), one.flight.clone());
         findings.sort_by(|one, other| {
@@ -78,6 +79,24 @@ impl CheckDocument {
             counted(self.counts.note, "note"),
         );
         text
+    }
+}
+
+/// A true airspeed that is wrong makes the lift coefficient wrong, and with it all that is held against a book: that is no sign of
+/// another unit of the mass.
+fn tell_consequences(findings: &mut [DataFinding]) {
+    let is_wrong =
+        |one: &&DataFinding| one.code == air::TRUE_AIRSPEED && one.severity == Severity::Serious;
+    let tails: BTreeSet<String> =
+        findings.iter().filter(is_wrong).map(|one| one.tail.clone()).collect();
+    for finding in findings {
+        let is_of_book = [book::DEVIATION, book::OUTSIDE].contains(&finding.code);
+        if is_of_book && tails.contains(&finding.tail) {
+            "a consequence of the true airspeed, which is wrong"
+                .clone_into(&mut finding.likely_cause);
+            "mend VTAS (true-airspeed-against-mach), then check again"
+                .clone_into(&mut finding.remedy);
+        }
     }
 }
 

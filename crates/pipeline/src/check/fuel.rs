@@ -149,24 +149,60 @@ fn asymmetry(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
         }
     }
     let (share, engine, rotor) = worst?;
-    // Against the other engines, not against the average that holds this one too.
+    let named = if flows.len() == 2 { wrong_of_two(report, flows) } else { Some(engine) };
+    let of = named.unwrap_or(1);
+    // Against the other engines, not against the average that holds this one too; of two, either is as far off as the other.
     #[expect(clippy::cast_precision_loss, reason = "engines are at most four")]
     let engines = flows.len() as f64;
+    let share = if of == engine { share } else { -share };
     let others = (engines - 1.0 - share) / (engines - 1.0);
     let percent = 100.0 * ((1.0 + share) / others - 1.0);
+    let (message, remedy) = match named {
+        Some(engine) => (
+            format!("engine {engine} burns {percent:+.1} % against the others at the same {rotor}"),
+            format!(
+                "compare the meter of engine {engine}; leave it as it is if the engine is worn"
+            ),
+        ),
+        None => (
+            format!(
+                "engine 1 burns {percent:+.1} % against engine 2 at the same {rotor}: which of the two it is these data do not state"
+            ),
+            "compare the meters of both engines; leave them as they are if one is worn".to_owned(),
+        ),
+    };
     Some(Draft {
         severity: Severity::Warning,
         code: "engine-asymmetry",
         size: percent,
         unit: "%",
-        message: format!(
-            "engine {engine} burns {percent:+.1} % against the others at the same {rotor}"
-        ),
+        message,
         likely_cause: "a flow meter that reads wrong, or an engine that is worn".to_owned(),
-        remedy: format!(
-            "compare the meter of engine {engine}; leave it as it is if the engine is worn"
-        ),
+        remedy,
     })
+}
+
+/// Which of two engines has the wrong meter (from 1), as fuel used states it: what it leaves for that engine beside the other one's
+/// meter is what the other one burns, and not so the other way round. `None` where fuel used does not state it, for instance because
+/// it adds up the same meters.
+fn wrong_of_two(report: &Report, flows: &[Vec<f64>]) -> Option<usize> {
+    let columns = report.columns();
+    let last = report.len() - 1;
+    if columns.time_s[last] - columns.time_s[0] < SHORTEST_S {
+        return None;
+    }
+    let used_kg = columns.fuel_used_kg[last] - columns.fuel_used_kg[0];
+    let by_meters_kg: Vec<f64> =
+        flows.iter().map(|flow| integral_kg(&columns.time_s, flow)).collect();
+    let &[first_kg, second_kg] = by_meters_kg.as_slice() else { return None };
+    let allowed = ASYMMETRY_SHARE + COUNTER_STEP_KG / used_kg.max(COUNTER_STEP_KG);
+    let leaves_as_much =
+        |by_other_kg: f64| ((used_kg - by_other_kg) / by_other_kg - 1.0).abs() < allowed;
+    match (leaves_as_much(second_kg), leaves_as_much(first_kg)) {
+        (true, false) => Some(1),
+        (false, true) => Some(2),
+        _ => None,
+    }
 }
 
 /// Rotor speed of an engine less the mean of all, %, and which rotor: N1 where it is recorded.

@@ -6,6 +6,7 @@ use flight::column::Column;
 use flight::{Report, Severity};
 use units::convert::{METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE};
 
+use super::air::believed_true_airspeed_m_s;
 use super::slips::{self, SPEED};
 use super::{Draft, mean};
 
@@ -30,6 +31,10 @@ const BLURRED_BY_WIND: f64 = 0.25;
 const SMALLEST_DRIFT_DEG: f64 = 1.5;
 /// Residual of track − heading − drift that is a wrong angle rather than rounding, degrees.
 const WRONG_ANGLE_DEG: f64 = 3.0;
+/// Residual of an angle that is right: positions are rounded, and the wind changes between them, degrees.
+const RIGHT_ANGLE_DEG: f64 = 1.5;
+/// How much more one sign of the drift may leave than the other where the drift hardly changes and both leave noise.
+const SAME_SCATTER: f64 = 1.25;
 /// Rolls that turn an aircraft, degrees.
 const TURNING_ROLL_DEG: f64 = 5.0;
 
@@ -143,7 +148,7 @@ fn wrapped(angle_deg: f64) -> f64 {
 /// Mean speed of the wind that ground speed, true airspeed and drift give, kt, and ground over true airspeed.
 fn wind(report: &Report) -> (f64, f64) {
     let columns = report.columns();
-    let (ground, air) = (&columns.ground_speed_m_s, &columns.true_airspeed_m_s);
+    let (ground, air) = (&columns.ground_speed_m_s, &believed_true_airspeed_m_s(report)[..]);
     let wind = |ground: f64, air: f64, cosine_of_drift: f64| {
         let squared = ground * ground + air * air - 2.0 * ground * air * cosine_of_drift;
         squared.max(0.0).sqrt() / METERS_PER_SECOND_PER_KNOT
@@ -215,11 +220,14 @@ fn drift(report: &Report, legs: &[Leg]) -> Option<Draft> {
     let headings = columns.optional.get(Column::TrueHeading)?;
     let drifts = columns.drift_deg.as_ref()?;
     let (mut as_declared, mut as_negated, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut left_declared, mut left_negated) = (Vec::new(), Vec::new());
     for leg in legs {
         let middle = usize::midpoint(leg.first, leg.last);
         let Some(heading) = headings[middle] else { continue };
         let crab = wrapped(leg.track_deg - heading);
         let drift = drifts[middle];
+        left_declared.push(wrapped(crab - drift));
+        left_negated.push(wrapped(crab + drift));
         as_declared.push(wrapped(crab - drift).abs());
         as_negated.push(wrapped(crab + drift).abs());
         sizes.push(drift.abs());
@@ -228,7 +236,11 @@ fn drift(report: &Report, legs: &[Leg]) -> Option<Draft> {
     if declared < WRONG_ANGLE_DEG || size < SMALLEST_DRIFT_DEG {
         return None;
     }
-    let is_sign = negated < 0.5 * declared;
+    // An angle that is added to the heading is left on every leg, whatever the drift; with the other sign nothing is left.
+    let (scatter_declared, scatter_negated) = (spread(&left_declared), spread(&left_negated));
+    let is_sign = negated < 0.5 * declared
+        && negated < scatter_declared.max(RIGHT_ANGLE_DEG)
+        && scatter_negated < SAME_SCATTER * scatter_declared;
     Some(Draft {
         severity: Severity::Warning,
         code: if is_sign { "drift-sign" } else { "heading-against-track" },
@@ -248,6 +260,14 @@ fn drift(report: &Report, legs: &[Leg]) -> Option<Draft> {
             "map HDG to true heading".to_owned()
         },
     })
+}
+
+/// Mean distance from the mean angle; the angles are near each other.
+fn spread(angles_deg: &[f64]) -> f64 {
+    let Some(&first) = angles_deg.first() else { return 0.0 };
+    let from_first = || angles_deg.iter().map(|angle| wrapped(angle - first));
+    let middle = mean(from_first()).unwrap_or(0.0);
+    mean(from_first().map(|angle| (angle - middle).abs())).unwrap_or(0.0)
 }
 
 /// Turns in the direction opposite to the roll.
