@@ -115,9 +115,13 @@ fn project_file(arguments: Vec<OsString>) -> Result<(Option<PathBuf>, Vec<OsStri
 /// The command that is asked for.
 fn command_of(arguments: &[OsString]) -> Option<clap::Command> {
     let all = Cli::command();
-    let found = arguments.iter().skip(1).find_map(|one| all.find_subcommand(one));
-    // `help` takes the name of a command and nothing of a project.
-    let mut found = found.filter(|command| command.get_name() != "help")?.clone();
+    let words = || arguments.iter().skip(1);
+    let place = words().position(|one| all.find_subcommand(one).is_some())?;
+    // `help` takes the name of a command and nothing of a project; it is no command before it is built.
+    if words().take(place).any(|one| one == "help") {
+        return None;
+    }
+    let mut found = words().nth(place).and_then(|one| all.find_subcommand(one))?.clone();
     found.build();
     Some(found)
 }

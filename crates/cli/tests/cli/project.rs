@@ -47,6 +47,29 @@ fn a_project_file_stands_for_options_and_the_command_line_wins() {
     assert_eq!(String::from_utf8(inside.stdout).unwrap(), by_project.stdout);
 }
 
+/// `help` takes the name of a command, and no option of its.
+#[test]
+fn a_project_file_adds_nothing_to_a_request_for_help() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let project_of = |text: &str| project(folder.path(), text);
+    for text in ["model = \"MODEL.ron\"\nlaw = \"paper\"\n", "model = [\"MODEL.ron\", \"M.ron\"]\n"]
+    {
+        let file = project_of(text);
+        let file = file.to_str().unwrap();
+        let ran = cruisefit(&["help", "adapt", "--project", file]).expect(0);
+        assert!(ran.stdout.contains("--relearn") && ran.stderr.is_empty(), "{}", ran.stderr);
+    }
+    // Of several models a command of one takes none.
+    let points = folder.path().join("points.csv");
+    std::fs::write(&points, "mass_kg,pressure_altitude_ft,mach\n30000,41000,0.8\n").unwrap();
+    let (points, model) = (points.to_str().unwrap(), model.to_str().unwrap());
+    let file = folder.path().join("cruisefit.toml");
+    let file = file.to_str().unwrap();
+    cruisefit(&["predict", points, "--model", model, "--project", file]).expect(0);
+    cruisefit(&["predict", points, "--project", file]).expect(2).says("--model <MODEL.ron>");
+}
+
 #[test]
 fn keys_that_no_command_has_are_refused_and_others_left_to_those_that_have_them() {
     let folder = tempfile::tempdir().unwrap();
