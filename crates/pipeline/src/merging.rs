@@ -13,7 +13,7 @@ use crate::adaptation::{Material, RemainderChoice, materials, rebuild, settled};
 use crate::learning::{self, LearningError};
 use crate::learnt_flights::KnownFlight;
 use crate::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
-use flight::Segment;
+use flight::{Segment, Timestamp};
 
 /// A model to merge.
 #[derive(Clone, Debug)]
@@ -116,9 +116,10 @@ fn flights_of(parts: Vec<Part>) -> Option<Vec<Material>> {
 /// A sum brought up to date, its flights in the order of flying.
 fn settle(mut merged: ModelFile) -> Result<ModelFile, MergeError> {
     if let Some(learnt) = &mut merged.learnt {
-        learnt
-            .ledger
-            .sort_by(|one, other| (&one.start, &one.flight).cmp(&(&other.start, &other.flight)));
+        // As text an instant with parts of a second is before the one without them.
+        learnt.ledger.sort_by_cached_key(|entry| {
+            (entry.start.parse::<Timestamp>().ok(), entry.start.clone(), entry.flight.clone())
+        });
         learning::settle(learnt)?;
     }
     Ok(merged)
