@@ -25,14 +25,18 @@ impl Distances {
         others: core::ops::Range<usize>,
         size: f64,
     ) -> Vec<Gain> {
-        use flight::effect::EffectId;
+        use flight::effect::{EffectId, TypicalSize};
         let before = self.squared_from_any(k, others.clone(), size).sqrt();
         let mut found = Vec::new();
-        let mass_kg = library
-            .effects
-            .iter()
-            .find(|e| e.id == EffectId::ZeroFuelMassBias)
-            .map_or(f64::INFINITY, |e| e.typical / 0.015 * MEASURED_MASS);
+        // The typical error of a load sheet is a share of the mass.
+        let mass_kg = match EffectId::ZeroFuelMassBias.entry().typical {
+            TypicalSize::ShareOfMass(share) => library
+                .effects
+                .iter()
+                .find(|e| e.id == EffectId::ZeroFuelMassBias)
+                .map_or(f64::INFINITY, |e| e.typical / share * MEASURED_MASS),
+            TypicalSize::Absolute(_) | TypicalSize::Known => f64::INFINITY,
+        };
         let engines = library
             .effects
             .iter()

@@ -6,11 +6,9 @@
 
 use crate::learning::dials::Dials;
 use crate::learning::rows::ChannelRows;
-use crate::math::quantile::{QuantileType, quantile};
+use crate::math::quantile::{MEDIAN_TO_DEVIATION, median};
 use crate::thresholds::{FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, USUAL_DISTANCE};
 
-/// Standard deviation over median distance from the median, of a normal distribution: 1/Φ⁻¹(¾).
-const DEVIATION_OVER_MEDIAN_DISTANCE: f64 = 1.482_602_218_505_602;
 /// Largest change of a weight at which they count as settled. Our choice: 0.8 instead of 0.75 changes nothing.
 const SETTLED: f64 = 0.05;
 
@@ -32,7 +30,7 @@ impl Weights {
         let residuals = rows.residual();
         let middle = median(residuals.to_vec());
         let distance = median(residuals.iter().map(|value| (value - middle).abs()).collect());
-        let scale = (DEVIATION_OVER_MEDIAN_DISTANCE * distance).max(LEAST_MEDIAN_DISTANCE);
+        let scale = (MEDIAN_TO_DEVIATION * distance).max(LEAST_MEDIAN_DISTANCE);
         let of_rows = residuals
             .iter()
             .map(|value| weight((value - middle) / scale, FARTHEST_FROM_MEDIAN))
@@ -78,11 +76,6 @@ impl Weights {
 fn weight(distance: f64, usual: f64) -> f64 {
     let share = usual / distance.abs();
     if share >= 1.0 || share.is_nan() { 1.0 } else { share * share }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    if values.is_empty() { 0.0 } else { quantile(&values, 0.5, QuantileType::Type7) }
 }
 
 #[cfg(test)]

@@ -30,6 +30,15 @@ pub(crate) fn quantile(sorted: &[f64], share: f64, kind: QuantileType) -> f64 {
     }
 }
 
+/// Standard deviation over the median distance from the median, of a normal distribution: 1/Φ⁻¹(¾).
+pub(crate) const MEDIAN_TO_DEVIATION: f64 = 1.482_602_218_505_602;
+
+/// The median by type 7, 0 of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    if values.is_empty() { 0.0 } else { quantile(&values, 0.5, QuantileType::Type7) }
+}
+
 /// The interval that holds 95 % of some numbers, its ends among them: positions of type 7 rounded outwards. Their order changes.
 pub(crate) fn central_95(values: &mut [f64]) -> [f64; 2] {
     let Some(last) = values.len().checked_sub(1) else { return [f64::NAN; 2] };

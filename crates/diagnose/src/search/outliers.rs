@@ -18,7 +18,7 @@ use crate::library::dates::is_dated;
 use crate::math::cholesky::Cholesky;
 use crate::math::gram::Sum;
 use crate::math::linear::gather;
-use crate::math::quantile::{QuantileType, quantile};
+use crate::math::quantile::{MEDIAN_TO_DEVIATION, median};
 use crate::priors::{OUTLIER_SMOOTH, ROBUST_EFFECT};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
@@ -30,8 +30,6 @@ use crate::thresholds::{
     OUTLIER_DISTANCE, OUTLIER_NEIGHBORS,
 };
 
-/// Median of |x| over the standard deviation of a normal distribution, inverted.
-const MEDIAN_TO_DEVIATION: f64 = 1.482_602_218_505_602;
 /// Turns at most; two or three settle who is an outlier.
 const TURNS: usize = 8;
 
@@ -342,11 +340,6 @@ impl Neighbors {
         }
         alike > 0 && alike as f64 >= ALIKE_NEIGHBORS * near as f64
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    if values.is_empty() { 0.0 } else { quantile(&values, 0.5, QuantileType::Type7) }
 }
 
 #[cfg(test)]

@@ -1,14 +1,12 @@
 //! Heavy tails: where the residuals that outliers left have them, segments are weighed.
 
 use crate::library::Library;
+use crate::math::quantile::MEDIAN_TO_DEVIATION;
 use crate::math::quantile::{QuantileType, quantile};
 use crate::priors::{ROBUST_EFFECT, ROBUST_SMOOTH, STUDENT_FREEDOM};
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{HEAVY_KURTOSIS, LEAST_ROBUST_SCALE};
-
-/// Median of |x| over the standard deviation of a normal distribution, inverted.
-const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 
 /// Weights of segments, where the residuals of the best model have heavy tails.
 ///
