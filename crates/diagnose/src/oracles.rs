@@ -312,6 +312,7 @@ fn steps_over_regions_are_of_two_fits() {
             [3, 4, 7].map(|n| (0..size).filter(|i| i % n == 1).collect()).to_vec();
         let noise = Noise::new(system, level);
         let steps = noise.steps(gap.as_slice(), &places);
+        assert_eq!(steps.len(), places.len());
         let ones = DVector::from_element(size, 1.0);
         for (step, place) in steps.iter().zip(&places) {
             let inside = DVector::from_fn(size, |i, _| if place.contains(&i) { 1.0 } else { 0.0 });

@@ -350,7 +350,9 @@ mod tests {
     fn pairs_are_of_two_different_effects() {
         let text =
             "(seed: 7, parts: [(denied: adapted, background: clean, kind: pair, repeats: 200)])";
-        for case in TrialPlan::from_ron(text).unwrap().cases(2) {
+        let cases = TrialPlan::from_ron(text).unwrap().cases(2);
+        assert_eq!(cases.len(), 200);
+        for case in cases {
             assert_eq!(case.planted.len(), 2);
             assert_ne!(case.planted[0], case.planted[1]);
         }

@@ -23,6 +23,8 @@ fn segments_that_are_weighed_down_count_less_in_places() {
         let with_weights = WhitenedSystem::new(&weighed, &design);
         let whole = expected_errors_removed(system, &gaps(system)).total;
         let found = expected_errors_removed(&with_weights, &gaps(&with_weights)).total;
+        assert!(!weights.is_empty());
+        assert_eq!([found.len(), whole.len()], [weights.len(); 2]);
         for ((found, whole), weight) in found.iter().zip(&whole).zip(&weights) {
             assert!(whole.abs() > 1e-9, "{whole}");
             assert!((found - weight * whole).abs() < 1e-12, "{found} {whole} {weight}");

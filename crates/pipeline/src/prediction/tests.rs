@@ -171,6 +171,8 @@ fn points_far_beyond_what_columns_hold_are_single_predictions_too() {
         let bare = Predictor::new(&file, Predicts::WholeModel).unwrap().without_deviations();
         let points = points();
         let found = bare.at_points(&points, None);
+        assert!(!points.is_empty());
+        assert_eq!(found.columns[0].1.len(), points.len());
         for (point, found_kg_s) in points.iter().zip(&found.columns[0].1) {
             let alone = bare.at(point).ok();
             let alone = alone.map(|one| one.prediction.fuel_flow_total.to_kilograms_per_second());
