@@ -153,15 +153,20 @@ impl Folder {
         }
     }
 
-    /// The same as the file has them, whatever its SHA-256: for a look at every tail.
+    /// Those of them whose START is wanted, as the file has them, whatever its SHA-256: for a look at every tail.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub(crate) fn flights_unchecked(&self, tail: &str) -> Result<Vec<KnownFlight>, Failure> {
+    pub(crate) fn flights_begun(
+        &self,
+        tail: &str,
+        is_wanted: impl Fn(&str) -> bool,
+    ) -> Result<Vec<KnownFlight>, Failure> {
         let Some(entry) = self.state.tails.get(tail) else { return self.flights(tail) };
         let path = self.path.join(&entry.flights.file);
         let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        learnt_flights::read(tail, &bytes).map_err(|reason| Failure::bad_file(&path, reason))
+        learnt_flights::begun(tail, &bytes, is_wanted)
+            .map_err(|reason| Failure::bad_file(&path, reason))
     }
 
     /// Where the folder is written.

@@ -31,6 +31,16 @@ pub fn file_stem_of_tail(tail: &str) -> String {
     stem
 }
 
+/// Path of a tail's own page below a folder.
+pub fn page_file_of_tail(tail: &str) -> String {
+    format!("pages/{}.html", file_stem_of_tail(tail))
+}
+
+/// The link to a file: `%` is a character of its name, not of the link.
+pub fn link_to(file: &str) -> String {
+    file.replace('%', "%25")
+}
+
 /// Whether Windows takes a name for a device, whatever its ending.
 ///
 /// # Source

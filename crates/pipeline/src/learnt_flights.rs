@@ -43,10 +43,25 @@ pub fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
 /// # Errors
 /// What a field holds that it cannot.
 pub fn read(tail: &str, bytes: &[u8]) -> Result<Vec<KnownFlight>, String> {
+    begun(tail, bytes, |_| true)
+}
+
+/// Those of them that are wanted by their START: of the others nothing is read but that.
+///
+/// # Errors
+/// As for [`read`].
+pub fn begun(
+    tail: &str,
+    bytes: &[u8],
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<Vec<KnownFlight>, String> {
     let mut reader = csv::ReaderBuilder::new().from_reader(bytes);
     let mut flights = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| error.to_string())?;
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(|error| error.to_string())? {
+        if !record.get(1).is_some_and(&is_wanted) {
+            continue;
+        }
         let text = |field: usize| record.get(field).unwrap_or_default();
         let wrong = |field: usize| {
             let line = record.position().map_or(0, csv::Position::line);
@@ -123,6 +138,9 @@ mod tests {
         };
         let csv = to_csv(std::slice::from_ref(&known));
         assert_eq!(read("T", &csv).unwrap(), std::slice::from_ref(&known));
+        let wanted = |start: &'static str| begun("T", &csv, move |text| text == start).unwrap();
+        assert_eq!(wanted("2024-03-01T10:00:00Z"), std::slice::from_ref(&known));
+        assert!(wanted("2024-03-01T12:00:00.5Z").is_empty());
         let changed = String::from_utf8(csv).unwrap().replace(",12,", ",x,");
         assert!(read("T", changed.as_bytes()).unwrap_err().contains("line 2, field 5"));
         let at = |text: &str| text.parse::<Timestamp>().unwrap();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pipeline::adaptation::{self, StoredTail};
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
-use pipeline::file_names::file_stem_of_tail;
+use pipeline::file_names::{file_stem_of_tail, link_to, page_file_of_tail};
 use pipeline::folder_state::{self, DeviationsState, FileState, State, TailState};
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::monitoring::{flights_of, flights_to_csv};
@@ -309,11 +309,10 @@ impl Adapted {
             let report = page::report_of_sections(&self.summary, &sections, title);
             return vec![(REPORT.to_owned(), report.into_bytes())];
         }
-        let page_of = |tail: &str| format!("pages/{}.html", file_stem_of_tail(tail));
-        // `%` of the file's name is a character of the name, not of the link.
+        let page_of = page_file_of_tail;
         let links = sections
             .iter()
-            .map(|section| (section.tail.as_str(), page_of(&section.tail).replace('%', "%25")));
+            .map(|section| (section.tail.as_str(), link_to(&page_of(&section.tail))));
         let report = page::fleet_report(&self.summary, &links.collect(), title);
         let mut pages = vec![(REPORT.to_owned(), report.into_bytes())];
         pages.extend(

@@ -12,6 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pipeline::adaptation::{LawAsked, Start, Starts};
 use pipeline::distinct::warn_of_copies;
+use pipeline::file_names::page_file_of_tail;
 use pipeline::model_file::ModelFile;
 use pipeline::models::{Models, NoModel, ReportsByModel};
 use pipeline::reading::Checks;
@@ -98,7 +99,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let summary = results::write(&run, &refused, &outcomes)?;
     // One page holds every tail: pages that an earlier run or program gave each of them would show old figures.
     let pages: Vec<String> = if run.on_one_page {
-        all.iter().map(|tail| tail::page_file(tail)).collect()
+        all.iter().map(|tail| page_file_of_tail(tail)).collect()
     } else {
         Vec::new()
     };

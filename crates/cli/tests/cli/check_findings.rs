@@ -134,7 +134,7 @@ fn told(slip: fn(&str) -> String) -> Vec<[String; 4]> {
     findings.map(|finding| keys.map(|key| word(finding, key))).collect()
 }
 
-/// Two engines: neither is named unless fuel used states which one; it does where one meter reads twice as much.
+/// Two engines: neither is named unless fuel used states which one, as it does where it is counted by other meters.
 #[test]
 fn the_wrong_one_of_two_engines_is_named_only_where_the_data_state_it() {
     let of = |slip| {
@@ -148,7 +148,11 @@ fn the_wrong_one_of_two_engines_is_named_only_where_the_data_state_it() {
     let [_, message, _, remedy] = of(|text| column(text, "WF(2)", |flow| 2.0 * flow));
     assert!(message.starts_with("engine 2 burns +"), "{message}");
     assert!(remedy.contains("the meter of engine 2"), "{remedy}");
-    let [_, message, _, remedy] = of(|text| column(text, "WF(2)", |flow| (1.08 * flow).round()));
+    // A counter that adds up the meters is as wrong as they are.
+    let [_, message, _, remedy] = of(|text| {
+        let text = column(text, "WF(2)", |flow| (1.08 * flow).round());
+        column(&text, "FU", |used| (1.04 * used).round())
+    });
     assert!(message.contains("which of the two it is these data do not state"), "{message}");
     assert!(remedy.contains("both engines"), "{remedy}");
 }

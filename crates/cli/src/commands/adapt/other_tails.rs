@@ -39,22 +39,22 @@ impl NewFlight {
     }
 }
 
-/// The new flights of all tails, by START.
-type ByStart<'a> = BTreeMap<Timestamp, Vec<(&'a str, &'a NewFlight)>>;
+/// The new flights of all tails, by START as tables have it.
+type ByStart<'a> = BTreeMap<String, Vec<(&'a str, &'a NewFlight)>>;
 
 /// Warns of new flights that another tail has learnt too, in this run or before.
 pub(super) fn warn_of_twins(output: &Path, folder: &Folder, outcomes: &[TailOutcome]) {
     let mut new = ByStart::new();
     for outcome in outcomes {
         for flight in &outcome.new_flights {
-            new.entry(flight.start).or_default().push((&outcome.tail, flight));
+            new.entry(flight.start.to_string()).or_default().push((&outcome.tail, flight));
         }
     }
     if new.is_empty() {
         return;
     }
-    for (one, flight, other) in among_new(&new) {
-        tell(output, (one, flight), other, &flight.flight);
+    for (tail, flight, (other, known)) in among_new(&new) {
+        tell(output, (tail, flight), other, &known.flight);
     }
     let tails: Vec<String> = folder.tails().into_iter().collect();
     let found: Vec<_> = tails.par_iter().map(|tail| stored_twins(folder, tail, &new)).collect();
@@ -75,15 +75,15 @@ fn tell(output: &Path, (tail, new): (&str, &NewFlight), other: &str, known: &str
     );
 }
 
-/// Tail and flight, and the other tail that learns the same in this run.
-fn among_new<'a>(new: &ByStart<'a>) -> Vec<(&'a str, &'a NewFlight, &'a str)> {
+/// Tail and flight, and those of another tail that learns the same in this run.
+fn among_new<'a>(new: &ByStart<'a>) -> Vec<(&'a str, &'a NewFlight, (&'a str, &'a NewFlight))> {
     let mut found = Vec::new();
     for at_once in new.values() {
         for (place, (tail, flight)) in at_once.iter().enumerate() {
             let twin = at_once[..place].iter().find(|(other, one)| {
                 other != tail && one.end == flight.end && one.samples == flight.samples
             });
-            found.extend(twin.map(|(other, _)| (*tail, *flight, *other)));
+            found.extend(twin.map(|other| (*tail, *flight, *other)));
         }
     }
     found
@@ -96,9 +96,9 @@ fn stored_twins<'a>(
     new: &ByStart<'a>,
 ) -> Vec<(&'a str, &'a NewFlight, String)> {
     // What is damaged is told where it is needed.
-    let flights = folder.flights_unchecked(tail).unwrap_or_default();
+    let flights = folder.flights_begun(tail, |start| new.contains_key(start)).unwrap_or_default();
     let twins_in_time = |known: &KnownFlight| {
-        let at_once = new.get(&known.start).map_or(&[][..], Vec::as_slice);
+        let at_once = new.get(&known.entry.start).map_or(&[][..], Vec::as_slice);
         at_once
             .iter()
             .filter(|(other, one)| *other != tail && one.end == known.end)

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use pipeline::file_names::{link_to, page_file_of_tail};
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 
 use super::Run;
-use super::tail::{TailOutcome, page_file};
+use super::tail::TailOutcome;
 use crate::failure::{Failure, RefusedReport};
 use crate::files::outputs::{check_replaceable, would_lose};
 use crate::folder::Folder;
@@ -69,15 +70,10 @@ pub(super) fn write(
         let links: BTreeMap<&str, String> = outcomes
             .iter()
             .filter(|outcome| outcome.state.is_some())
-            .map(|outcome| (outcome.tail.as_str(), link_to(&outcome.tail)))
+            .map(|outcome| (outcome.tail.as_str(), link_to(&page_file_of_tail(&outcome.tail))))
             .collect();
         page::fleet_report(&summary, &links, title)
     };
     run.folder.stage_unnamed(PAGE, neutral(&page).as_bytes())?;
     Ok(summary)
-}
-
-/// A tail's page as a link: `%` of the file's name is a character of the name, not of the link.
-fn link_to(tail: &str) -> String {
-    page_file(tail).replace('%', "%25")
 }

@@ -12,6 +12,7 @@ use pipeline::adaptation::{
 };
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
+use pipeline::file_names::page_file_of_tail;
 use pipeline::known_flights::KnownFlights;
 use pipeline::learning::LearningError;
 use pipeline::learnt_flights::{self, KnownFlight};
@@ -273,7 +274,7 @@ impl Run<'_> {
 
     /// A tail for which this run has no report: what the folder has of it, written again only where it has to be.
     pub(super) fn at_rest(&self, tail: &str) -> Result<TailOutcome, Failure> {
-        let needs_page = self.on_one_page || !self.folder.has(&page_file(tail));
+        let needs_page = self.on_one_page || !self.folder.has(&page_file_of_tail(tail));
         let lacks_deviations =
             self.folder.state_of(tail).is_some_and(|state| state.deviations.is_none());
         let is_older = self.folder.is_older(tail) || lacks_deviations;
@@ -337,16 +338,11 @@ impl Run<'_> {
             return Ok(Some(section));
         }
         self.folder.stage_unnamed(
-            &page_file(&result.tail),
+            &page_file_of_tail(&result.tail),
             neutral(&page::tail_page(&section)).as_bytes(),
         )?;
         Ok(None)
     }
-}
-
-/// Path of a tail's own page below the folder.
-pub(super) fn page_file(tail: &str) -> String {
-    format!("pages/{}.html", file_stem_of_tail(tail))
 }
 
 /// Writes a tail's files to the folder's waiting room.
