@@ -108,7 +108,7 @@ fn deliver(
         (true, None, _) => return Ok(Some(columns.to_json())),
         (_, _, Given::Text) => columns::write(columns, output)?,
         (_, _, Given::Parquet) => {
-            columns::write_beside(&kept(&arguments.points)?, columns, output)?
+            columns::write_beside(&kept(&arguments.points)?, columns, output)?;
         }
     }
     Ok(arguments.json.json.then(|| columns.to_json()))

@@ -34,10 +34,12 @@ impl Event {
     #[must_use]
     pub fn bearing_on_engine(&self, engine: usize) -> Bearing {
         let named = engines_named(&self.text());
-        match self.names_engines() {
-            _ if !named.is_empty() && !named.contains(&engine) => Bearing::None,
-            true => Bearing::Likely,
-            false => Bearing::Possible,
+        if !named.is_empty() && !named.contains(&engine) {
+            Bearing::None
+        } else if self.names_engines() {
+            Bearing::Likely
+        } else {
+            Bearing::Possible
         }
     }
 

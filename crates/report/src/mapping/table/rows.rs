@@ -379,10 +379,8 @@ impl<'r> Row<'r> {
         let joined = plan.thousands.and_then(|mark| without_groups(sent, mark, plan.decimal));
         let text = joined.as_deref().unwrap_or(sent);
         // A point is then neither a decimal mark nor, where groups are not said to be, one between these.
-        let with_point = (plan.decimal == ',').then(|| match text.contains('.') {
-            true => String::new(),
-            false => text.replacen(',', ".", 1),
-        });
+        let with_point = (plan.decimal == ',')
+            .then(|| if text.contains('.') { String::new() } else { text.replacen(',', ".", 1) });
         let text = with_point.as_deref().unwrap_or(text);
         // Other programs write the exponent's letter as a capital.
         number::whole(text.as_bytes())
