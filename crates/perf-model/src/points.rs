@@ -312,7 +312,7 @@ mod tests {
         let named: Vec<Option<usize>> = points.rows().iter().map(named).collect();
         assert_eq!(named, [Some(1), Some(2), Some(3), Some(4), None]);
         // A word is a fault, and so is the first one behind a value that is missing.
-        assert!(FlightPoints::from_csv(text.replace("-", "none").as_bytes()).is_err());
+        assert!(FlightPoints::from_csv(text.replace('-', "none").as_bytes()).is_err());
     }
 
     #[test]

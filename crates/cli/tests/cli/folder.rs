@@ -574,12 +574,12 @@ fn a_flight_on_two_tails_is_said_with_what_mends_it() {
     let corrected = changed(scratch.path(), 2, "0002.txt", &tail);
     let other = changed(scratch.path(), 3, "0003.txt", &tail);
     adapt(&model, &output, &reports(1..=3), &[]).expect(0);
-    let ran = adapt(&model, &output, &[corrected.clone()], &[]).expect(0);
+    let ran = adapt(&model, &output, std::slice::from_ref(&corrected), &[]).expect(0);
     ran.says("flight 0002 of tail SIM-01 and flight 0002 of tail SIM-02");
     ran.says("forget");
     ran.says("--tail SIM-01 --flight 0002");
     // Said in the night in which it is learnt, of that flight alone.
-    let silent = adapt(&model, &output, &[corrected.clone()], &[]).expect(0);
+    let silent = adapt(&model, &output, std::slice::from_ref(&corrected), &[]).expect(0);
     assert!(!silent.stderr.contains("learnt twice"), "{}", silent.stderr);
     // Two tails in one run, too.
     let at_once = scratch.path().join("at_once");
