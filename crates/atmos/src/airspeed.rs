@@ -12,7 +12,7 @@ use units::{
 
 use crate::constants::{
     RATIO_OF_SPECIFIC_HEATS, SEA_LEVEL_DENSITY_KG_M3, SEA_LEVEL_PRESSURE_PA,
-    SEA_LEVEL_TEMPERATURE_K,
+    SEA_LEVEL_TEMPERATURE_K, SPECIFIC_GAS_CONSTANT_J_KG_K,
 };
 use crate::isa::speed_of_sound;
 
@@ -33,6 +33,17 @@ pub fn mach_to_true_airspeed(mach: Mach, sat: Temperature) -> TrueAirspeed {
 #[must_use]
 pub fn true_airspeed_to_mach(true_airspeed: TrueAirspeed, sat: Temperature) -> Mach {
     Mach::new(true_airspeed.to_meters_per_second() / speed_of_sound(sat).to_meters_per_second())
+}
+
+/// Static air temperature in which a true airspeed is a Mach number: SAT = (V/M)²/(γR). `[atmosphere.7]`
+///
+/// As exact as the air data computer that makes the true airspeed of the same two numbers. NaN or infinite at Mach 0.
+#[inline]
+#[must_use]
+pub fn static_air_temperature(true_airspeed: TrueAirspeed, mach: Mach) -> Temperature {
+    let speed_of_sound_m_s = true_airspeed.to_meters_per_second() / mach.value();
+    let per_kelvin = RATIO_OF_SPECIFIC_HEATS * SPECIFIC_GAS_CONSTANT_J_KG_K;
+    Temperature::kelvin(speed_of_sound_m_s * speed_of_sound_m_s / per_kelvin)
 }
 
 /// Impact pressure: total minus static pressure, measured by the airspeed indicator.
@@ -186,6 +197,14 @@ mod tests {
                 true_airspeed_to_calibrated_airspeed(TrueAirspeed::knots(knots), SEA_LEVEL, sat);
             assert!((calibrated.to_knots() / knots - 1.0).abs() < 1e-14, "{calibrated}");
         }
+    }
+
+    /// ICAO Doc 7488: at 11 000 m the speed of sound is 295.069 m/s, at 216.65 K.
+    #[test]
+    fn temperature_of_the_tables_speed_of_sound() {
+        let speed = TrueAirspeed::meters_per_second(0.8 * 295.069);
+        let sat = static_air_temperature(speed, Mach::new(0.8));
+        assert!((sat.to_kelvin() - 216.65).abs() < 0.001, "{sat:?}");
     }
 
     #[test]

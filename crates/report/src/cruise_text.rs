@@ -27,6 +27,8 @@ pub struct Parsed {
     pub report: Report,
     /// The findings, in the order of the text.
     pub findings: Vec<Finding>,
+    /// Rows of a recording that are left out because they cannot be read, or hold a number out of range.
+    pub left_out: usize,
 }
 
 /// Who flew and when.
@@ -103,7 +105,7 @@ fn read_text(
     }
     let report = assemble::report(header, fields, engines, values)
         .map_err(|error| assemble::refusal(error, first_row))?;
-    Ok(Parsed { report, findings })
+    Ok(Parsed { report, findings, left_out: 0 })
 }
 
 fn read_first_line(lines: &mut Lines<'_>) -> Result<(), Refusal> {

@@ -149,6 +149,9 @@ fn unit_names(column: Column) -> String {
     plan::units_of(column).map(|unit| unit.name).collect::<Vec<_>>().join(" ")
 }
 
+/// Time without a row after which another flight may have begun, s: turnarounds take no less. Our choice.
+const SHORTEST_GAP_S: f64 = 1200.0;
+
 /// What a first mapping states as aircraft type where no column holds it.
 pub const NO_TYPE: &str = "TYPE";
 

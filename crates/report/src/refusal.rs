@@ -9,6 +9,7 @@ mod near;
 mod words;
 
 pub use near::nearest;
+pub(crate) use words::counted;
 
 /// A refusal with its position. The caller adds the name of the file.
 ///
@@ -27,9 +28,29 @@ pub struct Refusal {
     pub kind: RefusalKind,
 }
 
+/// Seconds of the day around midnight, about which a recording may lack some minutes.
+const LAST_OF_DAY_S: core::ops::RangeInclusive<f64> = 85_800.0..=86_400.0;
+const FIRST_OF_DAY_S: core::ops::Range<f64> = 0.0..600.0;
+const BEGINS_AGAIN: &str =
+    "; is midnight between them? time: TimeOfDay(…) in the mapping reads seconds of the day";
+
 impl Refusal {
+    /// Whether time falls as seconds of the day do at midnight.
+    pub(crate) fn is_over_midnight(&self) -> bool {
+        let (RefusalKind::TimeNotIncreasing { previous, .. }, Found::Text(found)) =
+            (&self.kind, &self.found)
+        else {
+            return false;
+        };
+        LAST_OF_DAY_S.contains(previous)
+            && found.parse().is_ok_and(|found| FIRST_OF_DAY_S.contains(&found))
+    }
+
     /// "; did you mean MACH?" where a name that is not known is like one that is.
     fn meant(&self) -> String {
+        if self.is_over_midnight() {
+            return BEGINS_AGAIN.to_owned();
+        }
         let Found::Text(found) = &self.found else { return String::new() };
         let near = match &self.kind {
             RefusalKind::ColumnUnknown => {
@@ -263,6 +284,13 @@ pub enum RefusalKind {
         smallest_kg: f64,
         /// What the mapping allows, kg.
         admissible_rise_kg: f64,
+        /// The time without a row before it, where that is long enough for another flight to have begun, s.
+        gap_s: Option<f64>,
+    },
+    /// A gross mass that goes together neither with those before nor with those behind.
+    GrossMassJumps {
+        /// The one before it, kg.
+        around_kg: f64,
     },
     /// A table that cannot be read.
     TableUnreadable {

@@ -253,10 +253,7 @@ fn bad_rows_cost_themselves() {
     assert_eq!(columns(&parsed).time_s, [0.0, 60.0, 300.0]);
     assert_eq!(columns(&parsed).fuel_used_kg, [0.0, 40.0, 200.0]);
     let said = message(&parsed[0], "mapped-rows-bad");
-    assert!(
-        said.starts_with("3 rows cannot be read and are left out, the first: line 4"),
-        "{said}"
-    );
+    assert!(said.starts_with("3 rows left out as unusable, the first: line 4"), "{said}");
 }
 
 /// Where nothing is left of a recording because most of its rows were left out, the reason of the first is told, and not that

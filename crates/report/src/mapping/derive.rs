@@ -1,7 +1,9 @@
 //! From rows of a recording to a report: conversion, derivation, ranges.
 
 mod air;
+mod flow;
 mod load;
+mod masses;
 mod rows;
 mod told;
 
@@ -35,19 +37,22 @@ pub(super) fn report(
     let fewest = if plan.points.is_some() { 1 } else { 3 };
     let level_rows = parts.iter().map(Range::len).sum();
     let first = parts.first().map_or(0, |part| part.start);
-    let Used { rows, surplus, converted } = Used::new(plan, recording, parts, fewest);
-    let refuse_inconsistent = |error| {
-        let found = Found::Rows(level_rows - surplus.len());
+    let Used { rows, mut surplus, converted } = Used::new(plan, recording, parts, fewest);
+    let refuse_inconsistent = |left_out: usize, error| {
+        let found = Found::Rows(level_rows - left_out);
         layout.refuse(recording, (first, 0), found, RefusalKind::Inconsistent(error))
     };
     if rows.len() < fewest {
         let error = ReportDataError::TooFewSamples { found: rows.len() };
-        return Err(refuse_inconsistent(error));
+        return Err(refuse_inconsistent(surplus.len(), error));
     }
     let level_parts = parts.len();
     let mut part = Part { plan, layout, recording, rows, converted, level_rows, level_parts };
+    let (masses, impossible) = part.gross_masses(fewest)?;
+    surplus.extend(impossible);
+    surplus.sort_unstable_by_key(|(row, _)| *row);
     let air = part.air_data()?;
-    let mut load = part.load()?;
+    let mut load = part.load(masses.as_ref())?;
     let fuel_used_kg = core::mem::take(&mut load.fuel_used_kg);
     let columns = part.columns(air, &load, fuel_used_kg)?;
     let mut notes = plan.notes.clone();
@@ -80,8 +85,9 @@ pub(super) fn report(
         None => Report::new(header, columns),
         Some(_) => Report::of_points(header, columns),
     };
-    let report = report.map_err(refuse_inconsistent)?;
-    Ok((Parsed { report, findings }, scatter))
+    let report = report.map_err(|error| refuse_inconsistent(surplus.len(), error))?;
+    let left_out = surplus.len() + recording.bad;
+    Ok((Parsed { report, findings, left_out }, scatter))
 }
 
 /// Standard deviations within the frames of averaged points, by quantity.
@@ -109,6 +115,8 @@ struct Load {
     fuel_used_kg: Vec<f64>,
     /// How far a recorded gross mass rose above its smallest value before.
     largest_rise_kg: Option<f64>,
+    /// Rows whose fuel flow was not believed where it was integrated.
+    bridged: usize,
 }
 
 struct Part<'p> {
@@ -255,7 +263,7 @@ impl Part<'_> {
             roll_deg: self.all(Column::Roll)?,
             drift_deg: self.all(Column::Drift)?,
             fuel_flow: if flows.is_empty() {
-                FuelFlowColumns::Total(self.total_fuel_flow(n2_percent.len())?)
+                FuelFlowColumns::Total(self.total_fuel_flow()?)
             } else {
                 FuelFlowColumns::PerEngine(flows)
             },
@@ -273,12 +281,10 @@ impl Part<'_> {
         Ok(engines)
     }
 
-    /// Where nothing determines the number of engines, the range of four is used.
-    fn total_fuel_flow(&mut self, engines: usize) -> Result<Vec<f64>, Refusal> {
+    fn total_fuel_flow(&mut self) -> Result<Vec<f64>, Refusal> {
         let column = Column::FuelFlowTotal;
-        let engines = if engines == 0 { MAXIMUM_ENGINES } else { engines };
+        let maximum = self.largest_total_flow_kg_s();
         let series = self.recorded(column).unwrap_or(Series::EMPTY);
-        let maximum = column.range().maximum.map(|one| one * engines as f64);
         self.check_range(column, &series, maximum)?;
         Ok(series.values)
     }

@@ -61,8 +61,10 @@ impl MassSource {
             Self::StartMass { gross_weight } => amounts.push(gross_weight),
         }
         for amount in amounts {
-            if let Amount::Column(column, _) = amount {
-                columns.push(column);
+            match amount {
+                Amount::Value(..) => {}
+                Amount::Column(column, _) => columns.push(column),
+                Amount::Columns(of_sum, _) => columns.extend(of_sum),
             }
         }
     }
@@ -71,9 +73,10 @@ impl MassSource {
 impl TimeSource {
     fn columns<'a>(&'a mut self, columns: &mut Vec<&'a mut String>) {
         match self {
-            Self::Timestamp { column, date, .. } => {
+            Self::Timestamp { column, date, utc_offset_column, .. } => {
                 columns.push(column);
                 columns.extend(date);
+                columns.extend(utc_offset_column);
             }
             Self::Epoch { column, .. }
             | Self::TimeOfDay { column, .. }
@@ -214,8 +217,8 @@ pub(super) enum TextSource {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum TimeSource {
-    /// ISO text, or one of another `format`; `utc_offset` where the text has none; `date` where it stands in a column of
-    /// its own.
+    /// ISO text, or one of another `format`; `utc_offset` where the text has none; `date` and `utc_offset_column` where
+    /// they are in columns of their own.
     Timestamp {
         column: String,
         #[serde(default)]
@@ -224,10 +227,13 @@ pub(super) enum TimeSource {
         format: Option<String>,
         #[serde(default)]
         utc_offset: Option<String>,
+        /// Column of the offset, where that is recorded.
+        #[serde(default)]
+        utc_offset_column: Option<String>,
     },
     /// Time since 1970 in s, ms, us or ns.
     Epoch { column: String, unit: String },
-    /// Hours, minutes and seconds; the day of the first row is `date`, and midnight begins the next one.
+    /// Hours, minutes and seconds, or seconds since midnight; the day of the first row is `date`, and midnight begins the next one.
     TimeOfDay { column: String, date: String, utc_offset: String },
     /// Seconds since `start`.
     Seconds { column: String, start: String },
@@ -279,11 +285,12 @@ pub(super) enum MassSource {
     StartMass { gross_weight: Amount },
 }
 
-/// A mass: the same in every flight, or from a column.
+/// A mass: the same in every flight, from a column, or the sum of several.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub(super) enum Amount {
     Value(f64, String),
     Column(String, String),
+    Columns(Vec<String>, String),
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -324,7 +331,7 @@ pub(super) enum QuantitySource {
         #[serde(default)]
         interpolate_s: Option<f64>,
     },
-    /// Mach number from true airspeed and static air temperature.
+    /// Mach number from true airspeed and static air temperature, or that temperature from true airspeed and Mach number.
     FromTrueAirspeed,
     /// True airspeed from Mach number and static air temperature.
     FromMach,

@@ -1,6 +1,8 @@
 //! A first mapping for a recording, from the names and values of its columns. What is a guess is marked `// ?`.
 
 mod columns;
+mod flights;
+mod mass;
 mod names;
 mod points;
 mod rules;
@@ -11,8 +13,8 @@ use core::fmt::Write;
 use columns::Columns;
 use names::engine_of;
 use rules::{
-    CALIBRATED, COMPUTED_FUEL, ENGINE_NAMES, GAUGES, GROSS, HEADING, Kind, ORDINARY, Rule, TEXTS,
-    TOTAL_FLOW, TRACK, USED, ZERO_FUEL,
+    CALIBRATED, ENGINE_NAMES, GAUGES, HEADING, INDICATED, Kind, ORDINARY, Rule, TEXTS, TOTAL_FLOW,
+    TRACK,
 };
 
 use crate::decode;
@@ -40,15 +42,13 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
          {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n{left_over}    mass: {mass}\n{LEVEL_CRUISE})\n",
         form = columns.form_entries(),
     );
+    let mapping = flights::mended(mapping, &text);
     let of_points = points::of_points(&mapping);
     let far_apart = points::are_far_apart(&of_points, &text);
     Ok(if far_apart.unwrap_or_else(|| columns.rows_are_far_apart()) { of_points } else { mapping })
 }
 
 const LEVEL_CRUISE: &str = "    // Level cruise; leave it away where the recording holds nothing else.\n    cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n";
-
-/// Where no column holds a mass: a number to be replaced.
-const START_MASS: &str = "StartMass(gross_weight: Value(60000, \"kg\")),   // ?";
 
 impl Columns {
     /// `column: …, unit: …` of a column, and whether the unit is a guess.
@@ -64,7 +64,7 @@ impl Columns {
         if is_sparse {
             fields += ", hold_s: 120";
         }
-        (fields, is_guess || is_sparse)
+        (fields, is_guess || is_sparse || name.is_vague())
     }
 
     fn unit_by_value(&self, column: usize, kind: Kind) -> (String, bool) {
@@ -134,7 +134,7 @@ impl Columns {
     fn engine_unit(&self, quantity: &str, column: usize) -> (String, bool) {
         match quantity {
             "WF" => match self.names[column].flow_unit() {
-                Some(unit) => (format!("unit: {unit:?}"), false),
+                Some(unit) => unit,
                 None if self.largest(column).is_some_and(|flow| flow < 20.0) => {
                     ("unit: \"kg/s\"".to_owned(), true)
                 }
@@ -148,23 +148,26 @@ impl Columns {
     /// What of MACH, SAT, VTAS and DRIFT has to be derived.
     fn air_data(&self, known: &[&str], text: &mut String) {
         let has = |quantity: &str| known.contains(&quantity);
-        let mut derived = false;
-        if !has("MACH") {
-            match self.find(&CALIBRATED) {
-                Some(column) => {
-                    let (fields, _) = self.recorded(column, Kind::CalibratedSpeed);
-                    line(text, "MACH", &format!("FromCalibratedAirspeed({fields})"), true);
-                }
-                None => line(text, "MACH", "FromTrueAirspeed", true),
-            }
-            derived = self.find(&CALIBRATED).is_none();
+        // Indicated airspeed has an error of position, which true airspeed is corrected for.
+        let has_better =
+            |column: &usize| self.names[*column].is(INDICATED) && has("VTAS") && has("SAT");
+        let calibrated = self.find(&CALIBRATED).filter(|column| !has_better(column));
+        let derived = !has("MACH") && calibrated.is_none();
+        if let (false, Some(column)) = (has("MACH"), calibrated) {
+            let (fields, _) = self.recorded(column, Kind::CalibratedSpeed);
+            line(text, "MACH", &format!("FromCalibratedAirspeed({fields})"), true);
+        } else if derived {
+            line(text, "MACH", "FromTrueAirspeed", true);
         }
         if !has("SAT") {
-            if has("TAT") && !derived {
-                line(text, "SAT", "FromTotalTemperature(recovery_factor: 1.0)", true);
+            let source = if has("TAT") && !derived {
+                "FromTotalTemperature(recovery_factor: 1.0)"
+            } else if has("VTAS") && has("MACH") {
+                "FromTrueAirspeed"
             } else {
-                line(text, "SAT", "Isa(deviation_k: 0.0)", true);
-            }
+                "Isa(deviation_k: 0.0)"
+            };
+            line(text, "SAT", source, true);
         }
         if !has("VTAS") && !derived {
             line(text, "VTAS", "FromMach", true);
@@ -221,44 +224,6 @@ impl Columns {
             let _ = writeln!(text, "    // Columns that are not used: {}.", unused.join(", "));
         }
         text
-    }
-
-    fn mass(&self) -> String {
-        let amount = |column: usize| {
-            let (fields, is_guess) = self.recorded(column, Kind::Mass);
-            let unit = ["lb", "t"].into_iter().find(|unit| fields.contains(&format!("{unit:?}")));
-            let unit = unit.unwrap_or("kg");
-            (self.names[column].sent.clone(), unit, is_guess)
-        };
-        let mark = |is_guess: bool| if is_guess { "   // ?" } else { "" };
-        let [gross, zero, used] = [&GROSS, &ZERO_FUEL, &USED].map(|rule| self.find(rule));
-        let tanks = self.find(&GAUGES).or_else(|| self.find(&COMPUTED_FUEL));
-        let found = [gross, zero, tanks, used];
-        match found {
-            [Some(gross), ..] => {
-                let (fields, is_guess) = self.recorded(gross, Kind::Mass);
-                format!("GrossMass({fields}, largest_rise_kg: 200),{}", mark(is_guess))
-            }
-            [None, Some(zero), Some(tanks), Some(used)] => {
-                let [zero, tanks, used] = [zero, tanks, used].map(amount);
-                format!(
-                    "LoadSheet(fuel_used: Column({:?}, {:?}), zero_fuel_weight: Column({:?}, {:?}), fuel_on_board: Column({:?}, {:?})),   // ?",
-                    used.0, used.1, zero.0, zero.1, tanks.0, tanks.1
-                )
-            }
-            [None, Some(zero), Some(tanks), None] => {
-                let [zero, tanks] = [zero, tanks].map(amount);
-                format!(
-                    "ZeroFuelAndTanks(zero_fuel_weight: Column({:?}, {:?}), tanks: [{:?}], unit: {:?}, largest_rise_kg: 500),{}",
-                    zero.0,
-                    zero.1,
-                    tanks.0,
-                    tanks.1,
-                    mark(zero.2 || tanks.2)
-                )
-            }
-            _ => START_MASS.to_owned(),
-        }
     }
 }
 

@@ -96,8 +96,14 @@ pub(super) enum MachSource {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TemperatureSource {
     Recorded,
-    TotalTemperature { recovery_factor: f64 },
-    Isa { deviation_k: f64 },
+    TotalTemperature {
+        recovery_factor: f64,
+    },
+    /// From true airspeed and Mach number.
+    TrueAirspeed,
+    Isa {
+        deviation_k: f64,
+    },
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -109,17 +115,17 @@ pub(super) enum TrueAirspeedSource {
 #[derive(Clone, Debug)]
 pub(super) enum MassPlan {
     GrossMass { mass: Conversion, zero_fuel_mass: Option<Mass>, largest_rise_kg: f64 },
-    FuelUsed { fuel_used: Conversion, zero_fuel_mass: Load, fuel_on_board: Load },
+    FuelUsed { fuel_used: Vec<Conversion>, zero_fuel_mass: Load, fuel_on_board: Load },
     ZeroFuelAndTanks { zero_fuel_mass: Load, tanks: Vec<Conversion>, largest_rise_kg: f64 },
     StartMass { gross_mass: Load },
 }
 
 /// A mass of the load sheet.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Load {
     Known(Mass),
-    /// That of the first row.
-    Column(Conversion),
+    /// The sum of these in the first row.
+    Columns(Vec<Conversion>),
 }
 
 /// The form of time in the recording.
@@ -129,16 +135,13 @@ pub(super) enum TimeForm {
         date_column: Option<String>,
         format: Option<String>,
         utc_offset: Option<String>,
+        /// Where the offset is in a column of its own.
+        offset_column: Option<String>,
     },
     /// A count of seconds or of something else since `start`.
-    Seconds {
-        start: Timestamp,
-        count: Count,
-    },
+    Seconds { start: Timestamp, count: Count },
     /// Seconds of the day; `midnight` begins the day of the first row.
-    TimeOfDay {
-        midnight: Timestamp,
-    },
+    TimeOfDay { midnight: Timestamp },
 }
 
 /// What a number that tells the time counts.
@@ -219,6 +222,14 @@ impl Plan {
         if self.points.is_some() { 1 } else { 3 }
     }
 
+    /// A recorded gross mass.
+    pub(super) const fn gross_mass(&self) -> Option<&Conversion> {
+        match &self.mass {
+            MassPlan::GrossMass { mass, .. } => Some(mass),
+            _ => None,
+        }
+    }
+
     /// The required columns of the report that this layout does not have.
     pub(super) fn missing(&self) -> Vec<MissingColumn> {
         let is_recorded = |wanted| self.recorded.iter().any(|(column, _)| *column == wanted);
@@ -283,13 +294,14 @@ fn thousands(mark: char, decimal: char) -> Result<char, MappingError> {
 fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {
     let any_day = "2000-01-01T00:00:00";
     match source {
-        TimeSource::Timestamp { column, date, format, utc_offset } => {
+        TimeSource::Timestamp { column, date, format, utc_offset, utc_offset_column } => {
             if let Some(offset) = &utc_offset
                 && parse_instant(&format!("{any_day}{offset}")).is_none()
             {
                 return Err(MappingError::InstantMalformed { text: offset.clone() });
             }
-            Ok((column, TimeForm::Timestamp { date_column: date, format, utc_offset }))
+            let (date_column, offset_column) = (date, utc_offset_column);
+            Ok((column, TimeForm::Timestamp { date_column, format, utc_offset, offset_column }))
         }
         TimeSource::Epoch { column, unit } => {
             let per_second = match unit.as_str() {

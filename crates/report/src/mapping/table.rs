@@ -18,7 +18,7 @@ pub use batch::{Batch, BatchColumn, NO_INSTANT, line_of_names, local_text};
 pub(super) use flights::Assembly;
 #[cfg(test)]
 pub(super) use open::Limits;
-pub(super) use recording::Recording;
+pub(super) use recording::{Recording, interpolate};
 pub use rows::Rows;
 
 use crate::refusal::{Found, Refusal, RefusalKind, nearest};
@@ -170,6 +170,8 @@ fn form_of(file: &MappingFile) -> Form {
 struct Fields {
     time: usize,
     date: Option<usize>,
+    /// Of the offset from UTC.
+    offset: Option<usize>,
     inputs: Vec<usize>,
     texts: [(&'static str, Text); 3],
     only: Vec<usize>,
@@ -177,13 +179,17 @@ struct Fields {
 
 impl Fields {
     fn find(plan: &Plan, names: &Names<'_>, file_name: Option<&str>) -> Result<Self, Refusal> {
-        let date = match &plan.time {
-            TimeForm::Timestamp { date_column: Some(column), .. } => Some(names.find(column)?),
-            _ => None,
+        let (date, offset) = match &plan.time {
+            TimeForm::Timestamp { date_column, offset_column, .. } => (
+                date_column.as_ref().map(|column| names.find(column)).transpose()?,
+                offset_column.as_ref().map(|column| names.find(column)).transpose()?,
+            ),
+            _ => (None, None),
         };
         Ok(Self {
             time: names.find(&plan.time_column)?,
             date,
+            offset,
             inputs: plan
                 .inputs
                 .iter()

@@ -10,15 +10,20 @@ impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Text(text) => write!(f, "{text:?}"),
-            Self::Fields(count) => write!(f, "{count} fields"),
-            Self::Units(count) => write!(f, "{count} units"),
-            Self::Rows(count) => write!(f, "{count} rows"),
+            Self::Fields(count) => f.write_str(&counted(*count, "field")),
+            Self::Units(count) => f.write_str(&counted(*count, "unit")),
+            Self::Rows(count) => f.write_str(&counted(*count, "row")),
             Self::Byte(byte) => write!(f, "byte 0x{byte:02x}"),
             Self::EndOfLine => f.write_str("the end of the line"),
             Self::EndOfText => f.write_str("the end of the text"),
             Self::Number { value, unit } => write!(f, "{} {unit}", without_rounding(*value)),
         }
     }
+}
+
+/// A number of things in words.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
 /// A number in twelve significant digits: what a conversion of units adds behind them was never recorded.
@@ -86,6 +91,7 @@ impl RefusalKind {
             Self::SourceNotANumber { .. } => "source-not-a-number",
             Self::SourceInstantMalformed => "source-instant-malformed",
             Self::GrossMassRises { .. } => "gross-mass-rises",
+            Self::GrossMassJumps { .. } => "gross-mass-jumps",
             Self::TableUnreadable { .. } => "table-unreadable",
             Self::PointsForSamples => "points-for-samples",
             Self::FlightCameBack { .. } => "flight-came-back",
@@ -165,10 +171,12 @@ impl fmt::Display for RefusalKind {
             Self::SourceTextMissing { key } => write!(f, "text for {key}"),
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
             Self::SourceInstantMalformed => f.write_str(INSTANT),
-            Self::GrossMassRises { smallest_kg, admissible_rise_kg } => write!(
-                f,
-                "gross mass no more than {admissible_rise_kg} kg above its smallest value so far, {smallest_kg} kg"
-            ),
+            Self::GrossMassRises { smallest_kg, admissible_rise_kg, gap_s } => {
+                write_mass_rise(f, *smallest_kg, *admissible_rise_kg, *gap_s)
+            }
+            Self::GrossMassJumps { around_kg } => {
+                write!(f, "gross mass as in the rows around it, {around_kg} kg")
+            }
             Self::TableUnreadable { reason } => write!(f, "rows that can be read ({reason})"),
             Self::PointsForSamples => f.write_str(SAMPLES),
             Self::FlightCameBack { last_line, limit } => write_came_back(f, *last_line, *limit),
@@ -193,6 +201,24 @@ fn write_came_back(
     write!(
         f,
         "no more rows of this flight, which ended in line {last_line} ({limit}): sort the table by tail, flight and time"
+    )
+}
+
+fn write_mass_rise(
+    f: &mut fmt::Formatter<'_>,
+    smallest_kg: f64,
+    admissible_rise_kg: f64,
+    gap_s: Option<f64>,
+) -> fmt::Result {
+    write!(
+        f,
+        "gross mass no more than {admissible_rise_kg} kg above its smallest value so far, {smallest_kg} kg"
+    )?;
+    let Some(gap_s) = gap_s else { return Ok(()) };
+    write!(
+        f,
+        "; {gap_s} s without a row come before it: another flight? \
+         new_flight_after_s in the mapping divides them"
     )
 }
 

@@ -34,6 +34,7 @@ impl Part<'_> {
             TemperatureSource::TotalTemperature { recovery_factor } => {
                 self.temperature_of_total_temperature(recovery_factor, mach.as_ref())?
             }
+            TemperatureSource::TrueAirspeed => self.temperature_of_airspeed(mach.as_ref())?,
         };
         let temperatures =
             || static_air_temperature_k.values.iter().map(|value| Temperature::kelvin(*value));
@@ -107,6 +108,17 @@ impl Part<'_> {
             *value =
                 temperature::total_to_static(total, Mach::new(*mach), recovery_factor).to_kelvin();
         }
+        self.check_range(Column::StaticAirTemperature, &series, None)?;
+        Ok(series)
+    }
+
+    fn temperature_of_airspeed(&mut self, mach: Option<&Series>) -> Result<Series, Refusal> {
+        let mut series = self.required(Column::TrueAirspeed)?;
+        for (value, mach) in series.values.iter_mut().zip(mach.iter().flat_map(|m| &m.values)) {
+            let speed = TrueAirspeed::meters_per_second(*value);
+            *value = airspeed::static_air_temperature(speed, Mach::new(*mach)).to_kelvin();
+        }
+        let series = Series::new(series.values, series.input);
         self.check_range(Column::StaticAirTemperature, &series, None)?;
         Ok(series)
     }

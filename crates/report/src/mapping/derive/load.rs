@@ -3,7 +3,10 @@
 use flight::column::Column;
 use units::Mass;
 
+use super::flow::Burnt;
+use super::masses::GrossMasses;
 use super::{Load, Part, Series};
+use crate::mapping::SHORTEST_GAP_S;
 use crate::mapping::plan::{Conversion, Load as LoadSource, MassPlan};
 use crate::refusal::{Found, Refusal, RefusalKind};
 
@@ -12,32 +15,23 @@ const FUEL_USED_STEP_KG: f64 = 0.5;
 const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
 
 impl Part<'_> {
-    pub(super) fn load(&self) -> Result<Load, Refusal> {
+    pub(super) fn load(&self, masses: Option<&GrossMasses>) -> Result<Load, Refusal> {
         match &self.plan.mass {
-            MassPlan::GrossMass { mass, zero_fuel_mass, largest_rise_kg } => {
-                let masses_kg = Series::new(self.convert(mass), mass.input);
-                let zero_fuel_mass =
-                    zero_fuel_mass.or_else(|| self.zero_fuel_mass_by_gauges(&masses_kg));
-                self.load_of_gross_mass(&masses_kg, zero_fuel_mass, *largest_rise_kg)
-            }
-            MassPlan::ZeroFuelAndTanks { zero_fuel_mass, tanks, largest_rise_kg } => {
-                let zero_fuel_mass = self.mass_of(zero_fuel_mass, |_| 0.0)?;
-                let mut values = vec![zero_fuel_mass.to_kilograms(); self.rows.len()];
-                for tank in tanks {
-                    for (value, fuel_kg) in values.iter_mut().zip(self.convert(tank)) {
-                        *value += fuel_kg;
-                    }
+            MassPlan::GrossMass { .. } | MassPlan::ZeroFuelAndTanks { .. } => match masses {
+                Some(masses) => self.load_of_gross_mass(masses),
+                // Either plan has masses.
+                None => {
+                    let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
+                    Err(self.refuse(0, 0, Found::Rows(0), kind))
                 }
-                let input = tanks.first().map_or(0, |tank| tank.input);
-                let masses_kg = Series::new(values, input);
-                self.load_of_gross_mass(&masses_kg, Some(zero_fuel_mass), *largest_rise_kg)
-            }
+            },
             MassPlan::StartMass { gross_mass } => self.load_of_integrated_flow(gross_mass),
             MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
-                let used_kg = |row| fuel_used.apply(&self.recording.numbers, row);
+                let used_kg = |row| self.sum_kg(fuel_used, row);
                 let zero_fuel_mass = self.mass_of(zero_fuel_mass, |_| 0.0)?;
                 let fuel_on_board = self.mass_of(fuel_on_board, used_kg)?;
-                let series = Series::new(self.convert(fuel_used), fuel_used.input);
+                let used_rows = self.rows.runs().flatten();
+                let series = Series::new(used_rows.map(used_kg).collect(), input_of(fuel_used));
                 let maximum = Some(fuel_on_board.to_kilograms());
                 self.check_range(Column::FuelUsed, &series, maximum)?;
                 self.check_fuel_used_series(&series)?;
@@ -46,6 +40,7 @@ impl Part<'_> {
                     fuel_on_board,
                     fuel_used_kg: series.values,
                     largest_rise_kg: None,
+                    bridged: 0,
                 })
             }
         }
@@ -53,12 +48,16 @@ impl Part<'_> {
 
     /// A mass of the load sheet: in a column that of the recording's first row. A column that falls is no load sheet, which stays as
     /// it was sent, but what there is at each row (the tanks' contents, gross mass): it lacks the fuel burnt until then.
-    fn mass_of(&self, load: &LoadSource, burnt_kg: impl Fn(usize) -> f64) -> Result<Mass, Refusal> {
-        let conversion = match load {
+    pub(super) fn mass_of(
+        &self,
+        load: &LoadSource,
+        burnt_kg: impl Fn(usize) -> f64,
+    ) -> Result<Mass, Refusal> {
+        let conversions = match load {
             LoadSource::Known(mass) => return Ok(*mass),
-            LoadSource::Column(conversion) => conversion,
+            LoadSource::Columns(conversions) => conversions,
         };
-        let at = |row: usize| conversion.apply(&self.recording.numbers, row);
+        let at = |row: usize| self.sum_kg(conversions, row);
         let sent = |row: &usize| at(*row).is_finite() && burnt_kg(*row).is_finite();
         let rows = 0..self.recording.time_s.len();
         let first = rows.clone().find(sent).unwrap_or(self.rows.at(0));
@@ -69,38 +68,18 @@ impl Part<'_> {
             return Ok(Mass::kilograms(value));
         }
         let kind = RefusalKind::MassNotPositive { mass: "mass of the load sheet" };
-        Err(self.refuse(0, conversion.input, Found::Number { value, unit: "kg" }, kind))
+        let found = Found::Number { value, unit: "kg" };
+        Err(self.refuse(0, input_of(conversions), found, kind))
     }
 
-    /// Zero-fuel mass where gross mass and the contents of the tanks are recorded, at the report's first row.
-    fn zero_fuel_mass_by_gauges(&self, masses_kg: &Series) -> Option<Mass> {
-        let is_quantity = |(column, _): &&(Column, _)| *column == Column::FuelQuantity;
-        let (_, quantity) = self.plan.recorded.iter().find(is_quantity)?;
-        let quantity_kg = quantity.apply(&self.recording.numbers, self.rows.at(0));
-        let zero_fuel_kg = masses_kg.values.first()? - quantity_kg;
-        (zero_fuel_kg > 0.0).then(|| Mass::kilograms(zero_fuel_kg))
+    /// The sum of columns in a row of the recording.
+    fn sum_kg(&self, conversions: &[Conversion], row: usize) -> f64 {
+        conversions.iter().map(|one| one.apply(&self.recording.numbers, row)).sum()
     }
 
     /// Gross mass at the recording's first row less the integral of fuel flow (trapezoids) from there, climb included.
     fn load_of_integrated_flow(&self, gross_mass: &LoadSource) -> Result<Load, Refusal> {
-        let flows: Vec<&Conversion> = self
-            .plan
-            .recorded
-            .iter()
-            .filter(|(column, _)| {
-                matches!(column, Column::FuelFlowTotal | Column::FuelFlowEngine(_))
-            })
-            .map(|(_, conversion)| conversion)
-            .collect();
-        let flow_kg_s = |row: usize| -> f64 {
-            flows.iter().map(|flow| flow.apply(&self.recording.numbers, row)).sum()
-        };
-        let mut burnt_kg = 0.0;
-        let mut burnt_by_row_kg = vec![0.0];
-        for (row, pair) in self.recording.time_s.windows(2).enumerate() {
-            burnt_kg += 0.5 * (flow_kg_s(row) + flow_kg_s(row + 1)) * (pair[1] - pair[0]);
-            burnt_by_row_kg.push(burnt_kg);
-        }
+        let Burnt { by_row_kg: burnt_by_row_kg, bridged } = self.burnt();
         let start_kg = self.mass_of(gross_mass, |row| burnt_by_row_kg[row])?.to_kilograms();
         let last_kg = burnt_by_row_kg[self.rows.at(self.rows.len() - 1)];
         let zero_fuel_kg = start_kg - last_kg;
@@ -118,6 +97,7 @@ impl Part<'_> {
                 .flat_map(|run| burnt_by_row_kg[run].iter().copied())
                 .collect(),
             largest_rise_kg: None,
+            bridged,
         })
     }
 
@@ -139,12 +119,14 @@ impl Part<'_> {
 
     /// Fuel used is how far gross mass has fallen below its first value: the running maximum of the fall, because
     /// recorded masses come in steps and alternate between two of them.
-    fn load_of_gross_mass(
-        &self,
-        masses: &Series,
-        zero_fuel_mass: Option<Mass>,
-        admissible_rise_kg: f64,
-    ) -> Result<Load, Refusal> {
+    fn load_of_gross_mass(&self, masses: &GrossMasses) -> Result<Load, Refusal> {
+        let zero_fuel_mass =
+            masses.zero_fuel_mass.or_else(|| self.zero_fuel_mass_by_gauges(&masses.masses));
+        let admissible_rise_kg = masses.largest_rise_kg;
+        if let Some(row) = masses.impossible.first() {
+            return Err(self.refuse_impossible_mass(masses, *row));
+        }
+        let masses = &masses.masses;
         let masses_kg = &masses.values;
         let first_kg = masses_kg[0];
         let mut smallest_kg = first_kg;
@@ -159,7 +141,8 @@ impl Part<'_> {
             smallest_kg = smallest_kg.min(*mass_kg);
             let rise_kg = mass_kg - smallest_kg;
             if rise_kg > admissible_rise_kg {
-                let kind = RefusalKind::GrossMassRises { smallest_kg, admissible_rise_kg };
+                let gap_s = self.longest_gap_s(row);
+                let kind = RefusalKind::GrossMassRises { smallest_kg, admissible_rise_kg, gap_s };
                 return Err(self.refuse(row, masses.input, found, kind));
             }
             largest_rise_kg = largest_rise_kg.max(rise_kg);
@@ -177,6 +160,36 @@ impl Part<'_> {
             return Err(self.refuse(0, masses.input, found, kind));
         }
         let largest_rise_kg = Some(largest_rise_kg);
-        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg })
+        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg, bridged: 0 })
     }
+
+    /// A gross mass that does not go together with those around it.
+    fn refuse_impossible_mass(&self, masses: &GrossMasses, row: usize) -> Refusal {
+        let masses_kg = &masses.masses.values;
+        let value = masses_kg[row];
+        let found = Found::Number { value, unit: "kg" };
+        let is_possible = |row: &usize| !masses.impossible.contains(row);
+        let around = (0..row).rev().find(is_possible);
+        let around = around.or_else(|| (row..masses_kg.len()).find(is_possible));
+        let kind = match around {
+            Some(around) if value > 0.0 => {
+                RefusalKind::GrossMassJumps { around_kg: masses_kg[around] }
+            }
+            _ => RefusalKind::MassNotPositive { mass: "gross mass" },
+        };
+        self.refuse(row, masses.masses.input, found, kind)
+    }
+
+    /// The longest time without a row between a row and the one used before it, where another flight may have begun meanwhile.
+    fn longest_gap_s(&self, row: usize) -> Option<f64> {
+        let before = self.rows.at(row.checked_sub(1)?);
+        let time_s = &self.recording.time_s[before..=self.rows.at(row)];
+        let gaps = time_s.windows(2).map(|pair| pair[1] - pair[0]);
+        gaps.reduce(f64::max).filter(|gap_s| *gap_s >= SHORTEST_GAP_S)
+    }
+}
+
+/// The first of the inputs that are added up.
+fn input_of(conversions: &[Conversion]) -> usize {
+    conversions.first().map_or(0, |conversion| conversion.input)
 }

@@ -25,7 +25,7 @@ impl UsedRows {
     }
 
     /// The runs without the rows that are left out, which are in their order.
-    fn without(&self, surplus: &[Surplus]) -> Self {
+    pub(super) fn without(&self, surplus: &[Surplus]) -> Self {
         let mut left_out = surplus.iter().map(|(row, _)| *row).peekable();
         let mut runs = Vec::with_capacity(self.runs.len());
         for run in self.runs() {
@@ -59,8 +59,8 @@ impl UsedRows {
     }
 }
 
-/// A row that is left out, and the column that is out of range in it.
-pub(super) type Surplus = (usize, Column);
+/// A row that is left out, and the column that is out of range in it; `None` of a gross mass.
+pub(super) type Surplus = (usize, Option<Column>);
 
 /// What is recorded of the rows that are used, in the stored unit of its column.
 pub(super) struct Converted {
@@ -105,7 +105,7 @@ impl Used {
         outside.sort_unstable();
         outside.dedup_by_key(|(row, _)| *row);
         let surplus: Vec<Surplus> =
-            outside.into_iter().map(|(row, place)| (row, converted[place].column)).collect();
+            outside.into_iter().map(|(row, place)| (row, Some(converted[place].column))).collect();
         if surplus.is_empty() || rows.len() - surplus.len() < fewest {
             return Self { rows, surplus: Vec::new(), converted };
         }

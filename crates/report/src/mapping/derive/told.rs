@@ -6,6 +6,7 @@ use flight::{Finding, Severity};
 use super::super::plan::{MachSource, MassPlan, TemperatureSource, TrueAirspeedSource};
 use super::rows::Surplus;
 use super::{Load, Part};
+use crate::refusal::counted;
 
 impl Part<'_> {
     /// The derivations, for the report's notes.
@@ -16,8 +17,10 @@ impl Part<'_> {
             MachSource::CalibratedAirspeed(_) => derived.push("MACH from CAS and ALT"),
             MachSource::TrueAirspeed => derived.push("MACH from VTAS and SAT"),
         }
-        if matches!(self.plan.temperature, TemperatureSource::TotalTemperature { .. }) {
-            derived.push("SAT from TAT and MACH");
+        match self.plan.temperature {
+            TemperatureSource::TotalTemperature { .. } => derived.push("SAT from TAT and MACH"),
+            TemperatureSource::TrueAirspeed => derived.push("SAT from VTAS and MACH"),
+            TemperatureSource::Recorded | TemperatureSource::Isa { .. } => {}
         }
         if matches!(self.plan.true_airspeed, TrueAirspeedSource::Mach) {
             derived.push("VTAS from MACH and SAT");
@@ -76,8 +79,8 @@ impl Part<'_> {
                 severity: Severity::Warning,
                 code: "mapped-rows-left-out",
                 message: format!(
-                    "{} rows lack a number that the report needs{} and are left out",
-                    self.recording.left_out,
+                    "{} left out for want of a number that the report needs{}",
+                    counted(self.recording.left_out, "row"),
                     self.recording
                         .lacking
                         .as_ref()
@@ -91,8 +94,8 @@ impl Part<'_> {
                 severity: Severity::Warning,
                 code: "mapped-rows-bad",
                 message: format!(
-                    "{} rows cannot be read and are left out, the first: {first}",
-                    self.recording.bad
+                    "{} left out as unusable, the first: {first}",
+                    counted(self.recording.bad, "row")
                 ),
                 line: Some(first.line),
             });
@@ -101,14 +104,24 @@ impl Part<'_> {
             let message = format!("{column:?} is held or interpolated in {filled} rows");
             findings.push(note(Severity::Note, "mapped-filled", message));
         }
+        if load.bridged > 0 {
+            let message = format!(
+                "{} with a fuel flow out of range or, in flight, of zero: mass follows a straight line over them",
+                counted(load.bridged, "row")
+            );
+            findings.push(note(Severity::Note, "mapped-flow-bridged", message));
+        }
         if let Some((row, column)) = surplus.first() {
             findings.push(Finding {
                 severity: Severity::Warning,
                 code: "mapped-rows-out-of-range",
                 message: format!(
-                    "{} rows hold a number out of range and are left out, the first for its {}",
-                    surplus.len(),
-                    column.name()
+                    "{} left out for a number out of range, the first for its {}",
+                    counted(surplus.len(), "row"),
+                    column.map_or_else(
+                        || "gross mass".to_owned(),
+                        |column| column.name().to_string()
+                    )
                 ),
                 line: Some(self.recording.lines.at(*row)),
             });

@@ -1,6 +1,7 @@
 //! The names and the first rows of a recording.
 
 use core::fmt::Write;
+use std::collections::BTreeSet;
 
 use super::super::table::{self, Form};
 use super::names::{Name, unit_called};
@@ -23,6 +24,8 @@ pub(super) struct Columns {
     pub(super) decimal: char,
     /// The one between groups of three digits.
     pub(super) thousands: Option<char>,
+    /// Texts that stand where there is no number; in `rows` they are empty.
+    not_available: BTreeSet<String>,
 }
 
 impl Columns {
@@ -34,6 +37,7 @@ impl Columns {
             .has_headers(true)
             .flexible(true)
             .delimiter(form.separator)
+            .comment(form.comment)
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let mut rows: Vec<Vec<String>> = reader
@@ -45,9 +49,13 @@ impl Columns {
             .filter(|row| row.iter().any(|field| !field.is_empty()))
             .collect();
         let units = rows.first().filter(|row| is_row_of_units(row)).cloned();
-        if units.is_some() {
+        let units_row = units.is_some();
+        if units_row {
             rows.remove(0);
         }
+        let not_available = take_marks(&mut rows);
+        let commented = units_in_comment(form, text, sent.len());
+        let units = units.or(commented);
         let unit_of = |column| units.as_ref().and_then(|row| row.get(column)).map(String::as_str);
         let names = sent
             .iter()
@@ -57,7 +65,7 @@ impl Columns {
         let has_commas = form.separator != b',' && has_decimal_commas(&rows);
         let decimal = if has_commas { ',' } else { '.' };
         let thousands = mark_of_thousands(&rows, decimal);
-        Ok(Self { form, names, rows, units_row: units.is_some(), decimal, thousands })
+        Ok(Self { form, names, rows, units_row, decimal, thousands, not_available })
     }
 
     /// The entries that tell how the text is written.
@@ -65,6 +73,12 @@ impl Columns {
         let mut text = String::new();
         if self.form.separator != b',' {
             let _ = writeln!(text, "    separator: {:?},", char::from(self.form.separator));
+        }
+        if let Some(mark) = self.form.comment {
+            let _ = writeln!(text, "    comment: {:?},", char::from(mark));
+        }
+        if !self.not_available.is_empty() {
+            let _ = writeln!(text, "    not_available: {:?},", Vec::from_iter(&self.not_available));
         }
         if self.decimal == ',' {
             text += "    decimal: ',',\n";
@@ -139,6 +153,9 @@ const TITLES: usize = 40;
 fn form_of(text: &str) -> Form {
     let lines: Vec<(usize, &str)> =
         (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty()).take(TITLES).collect();
+    if let Some(separator) = names_below_comments(&lines) {
+        return Form { separator, comment: Some(COMMENT), names_line: 1 };
+    }
     let (first, separator) = (0..lines.len())
         .find_map(|first| begins_a_table(&lines[first..]).map(|separator| (first, separator)))
         .unwrap_or_else(|| {
@@ -147,6 +164,57 @@ fn form_of(text: &str) -> Form {
     // Blank lines above the first one are left out by themselves.
     let names_line = if first == 0 { 1 } else { lines[first].0 };
     Form { separator, comment: None, names_line }
+}
+
+/// What avionics and instruments write before a line above the names.
+const COMMENT: u8 = b'#';
+
+/// The separator of a table below comments; its names are no numbers, lest a row below names with that mark is taken for them.
+fn names_below_comments(lines: &[(usize, &str)]) -> Option<u8> {
+    let is_comment = |(_, line): &&(usize, &str)| line.as_bytes().first() == Some(&COMMENT);
+    let comments = lines.iter().take_while(is_comment).count();
+    let (_, names) = lines.get(comments).filter(|_| comments > 0)?;
+    let separator = begins_a_table(&lines[comments..])?;
+    let has_number =
+        names.split(char::from(separator)).any(|field| field.trim().parse::<f64>().is_ok());
+    (!has_number).then_some(separator)
+}
+
+/// The units where a comment above the names has as many fields as there are names.
+fn units_in_comment(form: Form, text: &str, columns: usize) -> Option<Vec<String>> {
+    let mark = char::from(form.comment?);
+    let comments = text.lines().map_while(|line| line.strip_prefix(mark));
+    let fields = comments.map(|line| line.split(char::from(form.separator)).map(unit_word));
+    let rows: Vec<Vec<String>> = fields.map(Iterator::collect).collect();
+    rows.into_iter().rfind(|row| row.len() == columns && is_row_of_units(row))
+}
+
+/// A unit without what follows it: "ft" of "ft Baro".
+fn unit_word(field: &str) -> String {
+    let field = field.trim();
+    let word = field.split_whitespace().next().unwrap_or_default();
+    if unit_called(field).is_none() && unit_called(word).is_some() { word } else { field }
+        .to_owned()
+}
+
+/// Makes texts that mean "no number" empty, and gives them, but for NaN, which means it in every recording.
+fn take_marks(rows: &mut [Vec<String>]) -> BTreeSet<String> {
+    let mut marks = BTreeSet::new();
+    for cell in rows.iter_mut().flatten().filter(|cell| means_no_number(cell)) {
+        let mark = core::mem::take(cell);
+        if !mark.eq_ignore_ascii_case("nan") {
+            marks.insert(mark);
+        }
+    }
+    marks
+}
+
+/// Whether programs and print-outs write a text where they have no number.
+fn means_no_number(text: &str) -> bool {
+    let words = ["nan", "null", "n/a", "na", "#n/a", "none", "nil"];
+    let is_mark = |letter: char| "*-.#?_".contains(letter);
+    !text.is_empty()
+        && (text.chars().all(is_mark) || words.iter().any(|word| text.eq_ignore_ascii_case(word)))
 }
 
 fn most_frequent_separator(line: &str) -> u8 {

@@ -11,7 +11,7 @@ pub(super) struct Name {
 }
 
 /// What units are called at the end of a name, and what we call them; the longer ones first.
-const UNITS: [(&str, &str); 34] = [
+const UNITS: [(&str, &str); 40] = [
     ("feet", "ft"),
     ("ft", "ft"),
     ("meters", "m"),
@@ -27,6 +27,9 @@ const UNITS: [(&str, &str); 34] = [
     ("lbhr", "lb/h"),
     ("lbsh", "lb/h"),
     ("pph", "lb/h"),
+    ("gph", GALLONS),
+    ("galh", GALLONS),
+    ("galhr", GALLONS),
     ("th", "t/h"),
     ("tph", "t/h"),
     ("thr", "t/h"),
@@ -34,6 +37,8 @@ const UNITS: [(&str, &str); 34] = [
     ("kg", "kg"),
     ("lbs", "lb"),
     ("lb", "lb"),
+    ("klbs", KILOPOUNDS),
+    ("klb", KILOPOUNDS),
     ("tonnes", "t"),
     ("tonne", "t"),
     ("tons", "t"),
@@ -46,14 +51,29 @@ const UNITS: [(&str, &str); 34] = [
     ("pct", "%"),
     ("percent", "%"),
     ("c", "degC"),
+    ("k", "K"),
 ];
+
+/// Units that a mapping has by a scale.
+const GALLONS: &str = "gal/h";
+pub(super) const KILOPOUNDS: &str = "klb";
+/// A US gallon of kerosene of 0.803 kg/l, as fuel flow meters that count gallons take it: 6.7 lb.
+const POUNDS_OF_GALLON: &str = "unit: \"lb/h\", scale: 6.7";
 
 impl Name {
     /// `in_row` is what a row of units says of the column.
     pub(super) fn new(sent: &str, in_row: Option<&str>) -> Self {
         let mut name = Self::from_name(sent);
         name.unit = in_row.and_then(unit_called).or(name.unit);
+        if name.unit.is_none() && ["ktas", "kcas", "kias"].contains(&name.plain.as_str()) {
+            name.unit = Some("kt");
+        }
         name
+    }
+
+    /// Whether others are called so too: at times it is another quantity.
+    pub(super) fn is_vague(&self) -> bool {
+        ["temperature", "wt", "altb", "baroalt", "togw"].contains(&self.plain.as_str())
     }
 
     fn from_name(sent: &str) -> Self {
@@ -92,6 +112,7 @@ impl Name {
             (Kind::Speed | Kind::CalibratedSpeed, "m/s") => "unit: \"m/s\"",
             (Kind::Mass, "kg") => "unit: \"kg\"",
             (Kind::Mass, "lb") => "unit: \"lb\"",
+            (Kind::Mass, KILOPOUNDS) => "unit: \"lb\", scale: 1000",
             (Kind::Mass, "t") => "unit: \"t\"",
             (Kind::Percent, "%") => "unit: \"%MAC\"",
             (Kind::Angle, "deg") => "unit: \"deg\"",
@@ -99,8 +120,18 @@ impl Name {
         })
     }
 
-    pub(super) fn flow_unit(&self) -> Option<&'static str> {
-        self.unit.filter(|unit| ["kg/h", "lb/h", "kg/s", "t/h"].contains(unit))
+    /// The same for fuel flow, and whether it is a guess.
+    pub(super) fn flow_unit(&self) -> Option<(String, bool)> {
+        let unit = self.unit?;
+        if unit == GALLONS {
+            return Some((POUNDS_OF_GALLON.to_owned(), true));
+        }
+        let is_known = ["kg/h", "lb/h", "kg/s", "t/h"].contains(&unit);
+        is_known.then(|| (format!("unit: {unit:?}"), false))
+    }
+
+    pub(super) fn is_in(&self, unit: &str) -> bool {
+        self.unit == Some(unit)
     }
 }
 

@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::super::{MappedReport, Mapping, Source};
+use super::super::MappedReport;
+use super::LEVEL_CRUISE;
 use super::columns::Columns;
+use super::flights::each_flight;
+use super::mass::START_MASS;
 use super::rules::TEXTS;
-use super::{LEVEL_CRUISE, START_MASS};
 
 const AVERAGED_POINTS: &str = "    // Rows too far apart for samples: means over stable frames.\n    rows: AveragedPoints(averaged_over_s: 60),   // ?\n";
 /// A mass at the start of a flight needs samples to be followed from: of points each has its own.
 const MASS_OF_POINTS: &str =
     "GrossMass(column: \"GROSS WEIGHT\", unit: \"kg\", largest_rise_kg: 200),   // ?";
 /// Rows of a flight farther apart than this are no samples: a track refuses them.
-const LONGEST_STEP_S: f64 = 90.0;
+pub(super) const LONGEST_STEP_S: f64 = 90.0;
 /// Fewest rows from which anything is concluded.
 const FEWEST_ROWS: usize = 3;
 /// Rows of a flight up to which they are taken for points where no time says how far apart they are. Our choice: frames are
@@ -28,8 +30,8 @@ pub(super) fn of_points(mapping: &str) -> String {
 pub(super) fn are_far_apart(mapping: &str, text: &str) -> Option<bool> {
     let mut steps_s = Vec::new();
     let mut points = 0;
-    each_flight(mapping, text, |flight| {
-        if let MappedReport::Points(flight) = flight {
+    each_flight(mapping, text, |converter, flight| {
+        if let MappedReport::Points(flight) = converter.report(flight) {
             let time_s = &flight.parsed.report.columns().time_s;
             points += time_s.len();
             steps_s.extend(time_s.windows(2).map(|pair| pair[1] - pair[0]));
@@ -39,21 +41,7 @@ pub(super) fn are_far_apart(mapping: &str, text: &str) -> Option<bool> {
     (points >= FEWEST_ROWS).then(|| median(steps_s).is_none_or(|step_s| step_s > LONGEST_STEP_S))
 }
 
-/// Reads flights as far as they can be read; `None` where the mapping cannot read the text.
-fn each_flight(mapping: &str, text: &str, mut read: impl FnMut(MappedReport)) -> Option<()> {
-    let mut source = Source::text(text.as_bytes()).ok()?;
-    let mut stream = source.begin(&Mapping::from_ron(mapping).ok()?, Some("F")).ok()?;
-    let converter = stream.converter();
-    while let Some(piece) = source.next_piece(&mut stream).ok()? {
-        let rows = converter.rows(piece);
-        let (flights, _) = stream.add(rows);
-        flights.into_iter().map(|flight| converter.report(flight)).for_each(&mut read);
-    }
-    stream.finish().into_iter().map(|flight| converter.report(flight)).for_each(&mut read);
-    Some(())
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }

@@ -39,11 +39,14 @@ pub(super) const ORDINARY: [Rule; 13] = [
             "pressurealt",
             "pressalt",
             "palt",
+            "altp",
             "altitudestd",
             "altstd",
             "altistd",
             "altitudepressure",
             "baroaltitude",
+            "baroalt",
+            "altb",
             "altitude",
             "alt",
             "flightlevel",
@@ -53,12 +56,26 @@ pub(super) const ORDINARY: [Rule; 13] = [
     ),
     rule(
         "SAT",
-        &["staticairtemperature", "sat", "outsideairtemperature", "oat", "airtemperature"],
+        &[
+            "staticairtemperature",
+            "staticairtemp",
+            "sat",
+            "outsideairtemperature",
+            "outsideairtemp",
+            "oat",
+            "airtemperature",
+            "airtemp",
+            "temperature",
+        ],
         Kind::Temperature,
     ),
-    rule("TAT", &["totalairtemperature", "tat"], Kind::Temperature),
+    rule("TAT", &["totalairtemperature", "totalairtemp", "tat"], Kind::Temperature),
     rule("MACH", &["machnumber", "mach", "machno", "mn", "m"], Kind::Mach),
-    rule("VTAS", &["trueairspeed", "trueairspd", "tas", "vtas", "airspeedtrue"], Kind::Speed),
+    rule(
+        "VTAS",
+        &["trueairspeed", "trueairspd", "tas", "ktas", "vtas", "airspeedtrue"],
+        Kind::Speed,
+    ),
     rule("GSPD", &["groundspeed", "groundspd", "grndspd", "gndspd", "gspd", "gs"], Kind::Speed),
     rule("ROLL", &["rollangle", "roll", "bank", "bankangle"], Kind::Angle),
     rule("DRIFT", &["driftangle", "drift"], Kind::Angle),
@@ -68,8 +85,13 @@ pub(super) const ORDINARY: [Rule; 13] = [
     rule("CG", &["centreofgravity", "centerofgravity", "cg", "cgpercentmac"], Kind::Percent),
     rule("A/I", &["antiice", "wingantiice", "engantiice", "ai"], Kind::Discrete),
 ];
-pub(super) const CALIBRATED: Rule =
-    rule("", &["calibratedairspeed", "computedairspeed", "cas", "ias"], Kind::CalibratedSpeed);
+pub(super) const CALIBRATED: Rule = rule(
+    "",
+    &["calibratedairspeed", "computedairspeed", "cas", "kcas", INDICATED, "kias"],
+    Kind::CalibratedSpeed,
+);
+/// Not corrected for the error of its pressures' position.
+pub(super) const INDICATED: &str = "ias";
 pub(super) const TRACK: Rule = rule(
     "",
     &["trackangletrue", "tracktrue", "truetrack", "truetrk", "trktrue", "track", "trk"],
@@ -77,7 +99,22 @@ pub(super) const TRACK: Rule = rule(
 );
 pub(super) const GROSS: Rule = rule(
     "",
-    &["grossweight", "grossweightsmoothed", "gw", "weight", "mass", "grossmass", "aircraftmass"],
+    &[
+        "grossweight",
+        "grossweightsmoothed",
+        "gw",
+        "weight",
+        "wt",
+        "mass",
+        "grossmass",
+        "aircraftmass",
+    ],
+    Kind::Mass,
+);
+/// That of the take-off, or what is left of it.
+pub(super) const TAKE_OFF: Rule = rule(
+    "",
+    &["togw", "takeoffgrossweight", "takeoffweight", "takeoffmass", "tow", "rampweight"],
     Kind::Mass,
 );
 pub(super) const ZERO_FUEL: Rule = rule("", &["zerofuelweight", "zfw"], Kind::Mass);
@@ -89,11 +126,16 @@ pub(super) const GAUGES: Rule = rule(
     &["fuelquantity", "fuelqty", "fq", "totalfuelquantity", "totalfuelqty", "fuelqtytotal"],
     Kind::Mass,
 );
+/// Gauges of the left and of the right tanks.
+pub(super) const TANKS: [Rule; 2] = [
+    rule("", &["fqtyl", "fuelqtyl", "fuelqtyleft", "fuelquantityleft", "fql"], Kind::Mass),
+    rule("", &["fqtyr", "fuelqtyr", "fuelqtyright", "fuelquantityright", "fqr"], Kind::Mass),
+];
 pub(super) const USED: Rule = rule("", &["fuelused", "fu", "fuelburn", "fuelburnt"], Kind::Mass);
 pub(super) const ENGINE_NAMES: [(&str, &[&str]); 4] = [
     ("N1", &["n1"]),
     ("N2", &["n2"]),
-    ("WF", &["fuelflow", "ff", "wf", "ffuel"]),
+    ("WF", &["fuelflow", "fflow", "ff", "wf", "ffuel"]),
     ("EGT", &["egt", "itt", "exhaustgastemperature"]),
 ];
 

@@ -7,7 +7,10 @@ const SPREADSHEET_DAY_0: &str = "1899-12-30T00:00:00Z";
 /// Days that spreadsheets count to 1980 and to 2100.
 const SPREADSHEET_DAYS: core::ops::Range<f64> = 29_221.0..73_051.0;
 
-const TIME_NAMES: [&str; 11] = [
+/// The day on which a recording without date is taken to begin.
+const ANY_DAY: &str = "2000-01-01";
+
+const TIME_NAMES: [&str; 15] = [
     "timestamp",
     "datetime",
     "utcdatetime",
@@ -19,7 +22,13 @@ const TIME_NAMES: [&str; 11] = [
     "seconds",
     "flighttime",
     "times",
+    "lcltime",
+    "localtime",
+    "zeitutc",
+    "zeit",
 ];
+const DATE_NAMES: [&str; 5] = ["date", "utcdate", "lcldate", "localdate", "datum"];
+const OFFSET_NAMES: [&str; 3] = ["utcofst", "utcoffset", "utcofs"];
 
 impl Columns {
     pub(super) fn time_column(&self) -> Option<usize> {
@@ -27,12 +36,12 @@ impl Columns {
     }
 
     pub(super) fn date_column(&self) -> Option<usize> {
-        self.names.iter().position(|name| name.is("date") || name.is("utcdate"))
+        self.named(&DATE_NAMES)
     }
 
     pub(super) fn time(&self) -> String {
         let Some(column) = self.time_column() else {
-            return "Seconds(column: \"TIME\", start: \"2000-01-01T00:00:00Z\"),   // ?".to_owned();
+            return format!("Seconds(column: \"TIME\", start: \"{ANY_DAY}T00:00:00Z\"),   // ?");
         };
         let name = &self.names[column].sent;
         let date = self.date_column();
@@ -48,7 +57,7 @@ impl Columns {
                 format!("Days(column: {name:?}, start: {SPREADSHEET_DAY_0:?}),   // ?")
             }
             Some(_) => {
-                format!("Seconds(column: {name:?}, start: \"2000-01-01T00:00:00Z\"),   // ?")
+                format!("Seconds(column: {name:?}, start: \"{ANY_DAY}T00:00:00Z\"),   // ?")
             }
             None if sample.contains('-') => {
                 let mark = if with_zone { "" } else { "   // ?" };
@@ -58,16 +67,27 @@ impl Columns {
                 (Some(form), _) => format!(
                     "Timestamp(column: {name:?}, format: {form:?}, utc_offset: \"Z\"),   // ?"
                 ),
-                (None, Some(date)) => format!(
-                    "Timestamp(column: {name:?}, date: {:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
-                    self.names[date].sent,
-                    self.date_form(date).unwrap_or("%Y-%m-%d %H:%M:%S")
-                ),
+                (None, Some(date)) => {
+                    // Without a form the date is ISO.
+                    let form = self.date_form(date);
+                    let form = form.map_or_else(String::new, |form| format!(" format: {form:?},"));
+                    let (offset, mark) = self.offset();
+                    let date = &self.names[date].sent;
+                    format!("Timestamp(column: {name:?}, date: {date:?},{form} {offset}),{mark}")
+                }
                 (None, None) => format!(
-                    "TimeOfDay(column: {name:?}, date: \"2000-01-01\", utc_offset: \"Z\"),   // ?"
+                    "TimeOfDay(column: {name:?}, date: {ANY_DAY:?}, utc_offset: \"Z\"),   // ?"
                 ),
             },
         }
+    }
+
+    /// The entry that tells how far the recording's clock is from UTC, and the mark of a guess.
+    fn offset(&self) -> (String, &'static str) {
+        self.named(&OFFSET_NAMES).map_or_else(
+            || ("utc_offset: \"Z\"".to_owned(), "   // ?"),
+            |column| (format!("utc_offset_column: {:?}", self.names[column].sent), ""),
+        )
     }
 
     /// Whether a column's numbers are days of a spreadsheet: of these decades, with decimals as a second of a day needs them.
@@ -100,6 +120,13 @@ impl Columns {
             (_, true, _) => "%m.%d.%Y %H:%M:%S",
         })
     }
+}
+
+/// The same mapping with seconds since a day as seconds of the day, which begin again at midnight.
+pub(super) fn of_day(mapping: &str) -> String {
+    let since = format!(", start: \"{ANY_DAY}T00:00:00Z\"),   // ?");
+    let of_day = format!(", date: {ANY_DAY:?}, utc_offset: \"Z\"),   // ?");
+    mapping.replacen("time: Seconds(", "time: TimeOfDay(", 1).replacen(&since, &of_day, 1)
 }
 
 /// The first two numbers of a date whose three numbers have a mark between them.

@@ -37,17 +37,24 @@ pub(super) fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassP
         }
         MassSource::FuelUsed { column, unit, scale, zero_fuel_weight, fuel_on_board } => {
             MassPlan::FuelUsed {
-                fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, scale)?,
+                fuel_used: vec![inputs.conversion(Column::FuelUsed, column, &unit, scale)?],
                 zero_fuel_mass: Load::Known(mass(&zero_fuel_weight, "zero-fuel mass")?),
                 fuel_on_board: Load::Known(mass(&fuel_on_board, "fuel on board")?),
             }
         }
         MassSource::LoadSheet { fuel_used, zero_fuel_weight, fuel_on_board } => {
-            let Amount::Column(column, unit) = fuel_used else {
-                return Err(MappingError::QuantityNotMapped { column: Column::FuelUsed });
+            let (columns, unit) = match fuel_used {
+                Amount::Column(column, unit) => (vec![column], unit),
+                Amount::Columns(columns, unit) if !columns.is_empty() => (columns, unit),
+                Amount::Value(..) | Amount::Columns(..) => {
+                    return Err(MappingError::QuantityNotMapped { column: Column::FuelUsed });
+                }
             };
             MassPlan::FuelUsed {
-                fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?,
+                fuel_used: columns
+                    .into_iter()
+                    .map(|column| inputs.conversion(Column::FuelUsed, column, &unit, 1.0))
+                    .collect::<Result<_, _>>()?,
                 zero_fuel_mass: load(zero_fuel_weight, "zero-fuel mass", inputs)?,
                 fuel_on_board: load(fuel_on_board, "fuel on board", inputs)?,
             }
@@ -74,15 +81,19 @@ fn largest_rise(kg: f64) -> Result<f64, MappingError> {
 
 /// A mass of the load sheet. A column holds for the whole flight: the recorder may send it once.
 fn load(amount: Amount, what: &'static str, inputs: &mut Inputs) -> Result<Load, MappingError> {
-    Ok(match amount {
-        Amount::Value(value, unit) => Load::Known(mass(&WithUnit(value, unit), what)?),
-        Amount::Column(column, unit) => {
-            let conversion = inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?;
-            let input = &mut inputs.0[conversion.input];
-            if input.fill == Fill::Not {
-                input.fill = Fill::Hold(f64::INFINITY);
-            }
-            Load::Column(conversion)
+    let (columns, unit) = match amount {
+        Amount::Value(value, unit) => return Ok(Load::Known(mass(&WithUnit(value, unit), what)?)),
+        Amount::Column(column, unit) => (vec![column], unit),
+        Amount::Columns(columns, unit) => (columns, unit),
+    };
+    let mut conversions = Vec::with_capacity(columns.len());
+    for column in columns {
+        let conversion = inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?;
+        let input = &mut inputs.0[conversion.input];
+        if input.fill == Fill::Not {
+            input.fill = Fill::Hold(f64::INFINITY);
         }
-    })
+        conversions.push(conversion);
+    }
+    Ok(Load::Columns(conversions))
 }

@@ -87,6 +87,9 @@ impl Sources {
             (Column::TrueAirspeed, QuantitySource::FromMach) => {
                 self.true_airspeed = Some(TrueAirspeedSource::Mach);
             }
+            (Column::StaticAirTemperature, QuantitySource::FromTrueAirspeed) => {
+                self.temperature = Some(TemperatureSource::TrueAirspeed);
+            }
             (
                 Column::StaticAirTemperature,
                 QuantitySource::FromTotalTemperature { recovery_factor },
@@ -149,8 +152,12 @@ impl Sources {
             }
         }
         let is_airspeed_of_mach = matches!(derivations.true_airspeed, TrueAirspeedSource::Mach);
-        if matches!(derivations.mach, MachSource::TrueAirspeed)
-            && (is_airspeed_of_mach || is_temperature_of_mach)
+        let is_mach_of_airspeed = matches!(derivations.mach, MachSource::TrueAirspeed);
+        // Temperature of airspeed and Mach number needs both from elsewhere.
+        let is_temperature_of_both =
+            matches!(derivations.temperature, TemperatureSource::TrueAirspeed);
+        if (is_mach_of_airspeed && (is_airspeed_of_mach || is_temperature_of_mach))
+            || (is_temperature_of_both && (is_mach_of_airspeed || is_airspeed_of_mach))
         {
             return Err(MappingError::Circular);
         }

@@ -145,6 +145,7 @@ impl Layout {
         });
         let mut needed: Vec<usize> = core::iter::once(fields.time)
             .chain(fields.date)
+            .chain(fields.offset)
             .chain(fields.inputs.iter().copied())
             .chain(texts)
             .chain(fields.only.iter().copied())
@@ -223,7 +224,12 @@ impl Layout {
                 BatchColumn::Instants(instants),
             ) => are_there(instants).then(|| Times::Nanoseconds(core::mem::take(instants))),
             (
-                TimeForm::Timestamp { date_column: None, format: None, utc_offset },
+                TimeForm::Timestamp {
+                    date_column: None,
+                    format: None,
+                    offset_column: None,
+                    utc_offset,
+                },
                 BatchColumn::LocalTimes(times),
             ) => {
                 let ahead = utc_offset.as_deref().and_then(seconds_east)?.checked_mul(SECOND_NS)?;

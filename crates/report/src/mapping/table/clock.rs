@@ -3,11 +3,11 @@
 use flight::Timestamp;
 
 use super::batch::instant_of;
+use super::instants::DAY_S;
 use super::rows::Times;
 use super::{Layout, Recording, Text};
 use crate::mapping::plan::{Plan, TimeForm};
 
-const DAY_S: f64 = 86_400.0;
 /// Without a gap that the mapping states: of samples, and of averaged points, of which a flight may have few. Our choice.
 const GAP_OF_SAMPLES_S: f64 = 10_800.0;
 const GAP_OF_POINTS_S: f64 = 43_200.0;

@@ -83,7 +83,9 @@ impl Layout {
                 Some(Times::Instants(instants.clone()))
             }
             (Cells::LocalTimes(times), TimeForm::Timestamp { format: None, utc_offset, .. })
-                if self.fields.date.is_none() && times.iter().all(can_be_text) =>
+                if self.fields.date.is_none()
+                    && self.fields.offset.is_none()
+                    && times.iter().all(can_be_text) =>
             {
                 let offset = utc_offset.as_deref().and_then(seconds_east)?;
                 let instants = times.iter().map(|time| at_offset(*time, offset));

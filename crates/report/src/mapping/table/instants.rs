@@ -1,9 +1,34 @@
 //! Instants and times of day from text.
 
+use std::borrow::Cow;
+
 use flight::Timestamp;
 
 use crate::cruise_text::parse_instant;
 use crate::number;
+
+/// Seconds of a day; a leap second or the end of one is the next day's midnight.
+pub(super) const DAY_S: f64 = 86_400.0;
+
+/// A date, a time and an offset from UTC as one text, as far as they are in columns of their own.
+pub(super) fn in_one<'t>(date: Option<&str>, time: &'t str, offset: Option<&str>) -> Cow<'t, str> {
+    match (date, offset) {
+        (None, None) => Cow::Borrowed(time),
+        (date, offset) => {
+            let (date, offset) = (date.unwrap_or_default(), offset.unwrap_or_default());
+            Cow::Owned(format!("{date} {time}{offset}").trim_start().to_owned())
+        }
+    }
+}
+
+/// An offset from UTC with its sign, which may be left away where it is east.
+pub(super) fn with_sign(offset: &str) -> Cow<'_, str> {
+    if offset.starts_with(|first: char| first.is_ascii_digit()) {
+        Cow::Owned(format!("+{offset}"))
+    } else {
+        Cow::Borrowed(offset)
+    }
+}
 
 /// The last minute that was read: the instants of a recording differ in their seconds for most of the time.
 #[derive(Debug, Default)]

@@ -144,7 +144,7 @@ fn hold(time_s: &[f64], numbers: &mut [f64], age_s: f64) -> usize {
 }
 
 /// A straight line between values no farther apart than `span_s`; how many rows it stands in.
-fn interpolate(time_s: &[f64], numbers: &mut [f64], span_s: f64) -> usize {
+pub(in crate::mapping) fn interpolate(time_s: &[f64], numbers: &mut [f64], span_s: f64) -> usize {
     let mut before: Option<usize> = None;
     let mut filled = 0;
     for row in 0..numbers.len() {

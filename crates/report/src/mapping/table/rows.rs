@@ -3,11 +3,13 @@
 //! A piece is read without knowing what comes before it, so that pieces can be read at the same time: instants are kept
 //! as instants, and which flight a row belongs to is decided where the rows are put together.
 
+mod times;
+
 use std::sync::Arc;
 
 use flight::Timestamp;
 
-use super::instants::{InstantCache, formatted, time_of_day_s};
+use super::instants::InstantCache;
 use super::line_numbers::LineNumbers;
 use super::{Layout, Text, line_of, means_nothing, reader, settle};
 use crate::mapping::file::BadRows;
@@ -253,40 +255,6 @@ impl Rows {
         Ok(())
     }
 
-    fn add_time(&mut self, row: Row<'_>) -> Result<(), Refusal> {
-        let layout = row.layout;
-        let field = layout.fields.time;
-        let text = row.field(field);
-        let place = (row.line, &self.piece);
-        let malformed =
-            || row.refuse(place, field, Found::text(text), RefusalKind::SourceInstantMalformed);
-        match (&mut self.times, &layout.plan.time) {
-            (Times::Seconds(times), TimeForm::Seconds { count, .. }) => {
-                let number = row.number(field, &layout.plan.time_column, place)?;
-                let seconds = count.seconds(number);
-                if seconds.abs() > FARTHEST_S {
-                    return Err(malformed());
-                }
-                times.push(seconds);
-            }
-            (Times::OfDay(times), _) => times.push(time_of_day_s(text).ok_or_else(malformed)?),
-            (Times::Instants(times), TimeForm::Timestamp { format, utc_offset, .. }) => {
-                let offset = utc_offset.as_deref();
-                let instant = match (layout.fields.date.map(|date| row.field(date)), format) {
-                    (None, None) => self.cache.instant(text, offset),
-                    (Some(date), None) => self.cache.instant(&format!("{date} {text}"), offset),
-                    (None, Some(format)) => formatted(text, format, offset),
-                    (Some(date), Some(format)) => {
-                        formatted(&format!("{date} {text}"), format, offset)
-                    }
-                };
-                times.push(instant.ok_or_else(malformed)?);
-            }
-            _ => return Err(malformed()),
-        }
-        Ok(())
-    }
-
     /// A row with too few or too many fields.
     fn refuse_length(&self, row: Row<'_>) -> Refusal {
         let (expected, found) = (row.layout.columns, row.fields.len());
@@ -346,7 +314,9 @@ impl<'r> Row<'r> {
     }
 
     fn is_not_available(self, field: &str) -> bool {
-        field.is_empty() || self.layout.plan.not_available.iter().any(|text| text == field)
+        field.is_empty()
+            || field.eq_ignore_ascii_case("nan")
+            || self.layout.plan.not_available.iter().any(|text| text == field)
     }
 
     fn number_of(self, field: usize, input: &Input, place: Place<'_>) -> Result<f64, Refusal> {

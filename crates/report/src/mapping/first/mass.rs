@@ -1,0 +1,114 @@
+//! The entry that tells where mass comes from.
+
+use super::columns::Columns;
+use super::names::{KILOPOUNDS, engine_of};
+use super::rules::{COMPUTED_FUEL, GAUGES, GROSS, Kind, TAKE_OFF, TANKS, USED, ZERO_FUEL};
+
+/// Where no column holds a mass: a number to be replaced.
+pub(super) const START_MASS: &str = "StartMass(gross_weight: Value(60000, \"kg\")),   // ?";
+/// The same where tanks are gauged and the rest is not known.
+const ANY_ZERO_FUEL_WEIGHT: &str = "Value(10000, \"kg\")";
+
+impl Columns {
+    /// Where mass comes from.
+    pub(super) fn mass(&self) -> String {
+        let amount = |column: usize| {
+            let (fields, is_guess) = self.recorded(column, Kind::Mass);
+            let unit = ["lb", "t"].into_iter().find(|unit| fields.contains(&format!("{unit:?}")));
+            let unit = unit.unwrap_or("kg");
+            (self.names[column].sent.clone(), unit, is_guess)
+        };
+        // Amounts have a unit and no scale.
+        let with_unit = |column: &usize| !self.names[*column].is_in(KILOPOUNDS);
+        let find = |rule| self.find(rule).filter(with_unit);
+        let gross = self.find(&GROSS).or_else(|| self.find(&TAKE_OFF).filter(|at| self.falls(*at)));
+        let [zero, used] = [&ZERO_FUEL, &USED].map(find);
+        let tanks = find(&GAUGES).or_else(|| find(&COMPUTED_FUEL));
+        let [left, right] = TANKS.each_ref().map(find);
+        let found = [gross, zero, tanks, used];
+        let of_engines = self.used_by_engines();
+        match found {
+            [Some(gross), ..] => {
+                let (fields, is_guess) = self.recorded(gross, Kind::Mass);
+                format!("GrossMass({fields}, largest_rise_kg: 200),{}", mark(is_guess))
+            }
+            [None, Some(zero), Some(tanks), Some(used)] => {
+                let [zero, tanks, used] = [zero, tanks, used].map(amount);
+                format!(
+                    "LoadSheet(fuel_used: Column({:?}, {:?}), zero_fuel_weight: Column({:?}, {:?}), fuel_on_board: Column({:?}, {:?})),   // ?",
+                    used.0, used.1, zero.0, zero.1, tanks.0, tanks.1
+                )
+            }
+            [None, Some(zero), Some(tanks), None] if of_engines.len() > 1 => {
+                let [zero, tanks] = [zero, tanks].map(amount);
+                let (_, unit, _) = amount(of_engines[0]);
+                let names: Vec<&str> =
+                    of_engines.iter().map(|column| self.names[*column].sent.as_str()).collect();
+                format!(
+                    "LoadSheet(fuel_used: Columns({names:?}, {unit:?}), zero_fuel_weight: Column({:?}, {:?}), fuel_on_board: Column({:?}, {:?})),   // ?",
+                    zero.0, zero.1, tanks.0, tanks.1
+                )
+            }
+            [None, Some(zero), Some(tanks), None] => {
+                let [zero, tanks] = [zero, tanks].map(amount);
+                format!(
+                    "ZeroFuelAndTanks(zero_fuel_weight: Column({:?}, {:?}), tanks: [{:?}], unit: {:?}, largest_rise_kg: 500),{}",
+                    zero.0,
+                    zero.1,
+                    tanks.0,
+                    tanks.1,
+                    mark(zero.2 || tanks.2)
+                )
+            }
+            _ => match (left.zip(right), find(&TAKE_OFF)) {
+                (Some((left, right)), _) => self.mass_of_two_tanks(left, right, zero.map(amount)),
+                (None, Some(start)) => {
+                    let (name, unit, _) = amount(start);
+                    format!("StartMass(gross_weight: Column({name:?}, {unit:?})),   // ?")
+                }
+                (None, None) => START_MASS.to_owned(),
+            },
+        }
+    }
+
+    fn mass_of_two_tanks(
+        &self,
+        left: usize,
+        right: usize,
+        zero: Option<(String, &'static str, bool)>,
+    ) -> String {
+        let zero = zero.map_or_else(
+            || ANY_ZERO_FUEL_WEIGHT.to_owned(),
+            |(name, unit, _)| format!("Column({name:?}, {unit:?})"),
+        );
+        let unit = match self.recorded(left, Kind::Mass).0 {
+            fields if fields.contains("\"lb\"") => "lb",
+            fields if fields.contains("\"t\"") => "t",
+            _ => "kg",
+        };
+        let [left, right] = [left, right].map(|column| &self.names[column].sent);
+        format!(
+            "ZeroFuelAndTanks(zero_fuel_weight: {zero}, tanks: [{left:?}, {right:?}], unit: {unit:?}, largest_rise_kg: 500),   // ?"
+        )
+    }
+
+    /// Counters of fuel used, engine by engine.
+    fn used_by_engines(&self) -> Vec<usize> {
+        let of_engine = |engine: u8| {
+            (0..self.names.len()).find(|&column| {
+                engine_of(&self.names[column], USED.names) == Some(engine) && !self.is_empty(column)
+            })
+        };
+        (1..=4).map_while(of_engine).collect()
+    }
+
+    /// Whether a column is less at its end than where it begins.
+    fn falls(&self, column: usize) -> bool {
+        let numbers = || self.texts_of(column).filter_map(|text| self.number(text));
+        numbers().next().zip(numbers().last()).is_some_and(|(first, last)| last < first)
+    }
+}
+
+const fn mark(is_guess: bool) -> &'static str {
+    if is_guess { "   // ?" } else { "" }
+}
