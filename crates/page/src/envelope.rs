@@ -21,7 +21,7 @@ struct Cell {
     sum_percent: f64,
 }
 
-/// Cells between breakpoints, and the segments in them.
+/// Cells between breakpoints of lift coefficient and around those of Mach number, and the segments in them.
 struct Envelope {
     lift_coefficient: Vec<f64>,
     mach: Vec<f64>,
@@ -76,7 +76,7 @@ pub(crate) fn envelope(view: &TailView) -> Markup {
             p.note {
                 "Empty cells: no segment. The table continues beyond the outer cells, where nobody flew."
                 @if envelope.merged != (1, 1) {
-                    " A cell here is " (envelope.merged.0) " by " (envelope.merged.1) " cells of the table."
+                    " A cell here holds " (envelope.merged.0) " by " (envelope.merged.1) " cells of the table."
                 }
             }
         }
@@ -100,7 +100,8 @@ impl Envelope {
         let error = |point: &Point| {
             if view.adapted { point.after } else { point.before }
         };
-        let (rows, columns) = (&view.polars.lift_coefficient, &view.polars.mach);
+        let rows = &view.polars.lift_coefficient;
+        let columns = &around(&view.polars.mach);
         let mut cells = vec![Cell::default(); (rows.len() - 1) * (columns.len() - 1)];
         let mut bounds: Option<[usize; 4]> = None;
         for point in &view.points {
@@ -144,6 +145,14 @@ impl Envelope {
     fn segments(&self) -> usize {
         self.cells.iter().map(|cell| cell.segments).sum()
     }
+}
+
+/// Edges half way between the breakpoints, and the outer ones: Mach numbers are flown in hundredths, which breakpoints are too, and a
+/// steady cruise would fall on both sides of one.
+fn around(breakpoints: &[f64]) -> Vec<f64> {
+    let between = breakpoints.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+    let (first, last) = (breakpoints.first(), breakpoints.last());
+    first.copied().into_iter().chain(between).chain(last.copied()).collect()
 }
 
 /// Index of the cell that holds a value; the last breakpoint belongs to the last cell.
@@ -203,6 +212,15 @@ mod tests {
         let breakpoints = [0.3, 0.4, 0.5];
         let cells = [0.3, 0.35, 0.4 - 1e-10, 0.4, 0.5].map(|value| between(&breakpoints, value));
         assert_eq!(cells, [0, 0, 1, 1, 1]);
+    }
+
+    /// A steady Mach 0.78 is in one column whatever its last digit.
+    #[test]
+    fn a_steady_mach_number_is_in_one_column() {
+        let edges = around(&[0.74, 0.76, 0.78, 0.80]);
+        let columns = [0.7796, 0.78, 0.7804].map(|mach| between(&edges, mach));
+        assert_eq!(columns, [2; 3]);
+        assert_eq!([0.74, 0.80].map(|mach| between(&edges, mach)), [0, 3]);
     }
 
     #[test]

@@ -23,10 +23,18 @@ use units::PressureAltitude;
 use crate::columns::Columns;
 use crate::segments_table::Evaluated;
 
-/// Bands of pressure altitude, ft.
-const LEVEL_BAND_FT: f64 = 2000.0;
-/// Bands of Mach number.
-const MACH_BAND: f64 = 0.02;
+/// Bands of a quantity.
+struct Bands {
+    width: f64,
+    /// Where one begins. Levels are flown in whole thousands of feet and Mach numbers in whole hundredths, give or take a rounding: edges
+    /// lie half way between them, lest a steady cruise falls on both sides of one.
+    edge: f64,
+}
+
+/// Two levels each, ft: FL350 and FL360 are in one.
+const LEVEL_BANDS_FT: Bands = Bands { width: 2000.0, edge: 500.0 };
+/// Two hundredths each: 0.78 and 0.79 are in one.
+const MACH_BANDS: Bands = Bands { width: 0.02, edge: 0.015 };
 
 /// A fuel factor with its interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,11 +104,8 @@ pub fn of_tail(
             continue;
         }
         let level_ft = PressureAltitude::meters(segment.means.pressure_altitude_m).to_feet();
-        let keys = [
-            (0, 0),
-            (1, band_of(level_ft, LEVEL_BAND_FT)),
-            (2, band_of(segment.means.mach, MACH_BAND)),
-        ];
+        let keys =
+            [(0, 0), (1, LEVEL_BANDS_FT.of(level_ft)), (2, MACH_BANDS.of(segment.means.mach))];
         for key in keys {
             let flight = Arc::clone(&segment.identity);
             groups.entry(key).or_default().entry(flight).or_default().push(ln_ratio);
@@ -116,11 +121,10 @@ fn of_group(tail: &str, (condition, band): (usize, i64), group: &Group) -> FuelF
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let flights: Vec<f64> = group.values().map(|segments| mean(segments)).collect();
     let mean_ln_ratio = mean(&flights);
-    let edges = |width: f64| Some((band as f64 * width, (band + 1) as f64 * width));
     let (condition, band) = match condition {
         0 => ("all", None),
-        1 => ("pressure_altitude_ft", edges(LEVEL_BAND_FT)),
-        _ => ("mach", edges(MACH_BAND).map(|(from, to)| (hundredths(from), hundredths(to)))),
+        1 => ("pressure_altitude_ft", Some(LEVEL_BANDS_FT.edges(band))),
+        _ => ("mach", Some(MACH_BANDS.edges(band))),
     };
     FuelFactor {
         tail: tail.to_owned(),
@@ -141,16 +145,19 @@ fn half_width95(values: &[f64], mean: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975) * of_mean)
 }
 
-/// Number of the band; a value within rounding of an edge belongs to the band above it.
-fn band_of(value: f64, width: f64) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "levels and Mach numbers are small")]
-    let band = (value / width + 1e-9).floor() as i64;
-    band
-}
+impl Bands {
+    /// Number of the band; a value within rounding of an edge belongs to the band above it.
+    fn of(&self, value: f64) -> i64 {
+        #[expect(clippy::cast_possible_truncation, reason = "levels and Mach numbers are small")]
+        let band = ((value - self.edge) / self.width + 1e-9).floor() as i64;
+        band
+    }
 
-/// The decimal that an edge of a Mach band is.
-fn hundredths(mach: f64) -> f64 {
-    (mach * 100.0).round() / 100.0
+    /// From and below, as the decimals that they are.
+    fn edges(&self, band: i64) -> (f64, f64) {
+        let at = |band: i64| (1e3 * (self.edge + band as f64 * self.width)).round() / 1e3;
+        (at(band), at(band + 1))
+    }
 }
 
 /// One row per tail and condition.
@@ -226,10 +233,31 @@ mod tests {
         assert_eq!(half_width95(&[1.0], 1.0), None);
     }
 
+    /// A steady cruise that is a rounding below or above what is flown is in one band.
     #[test]
+    fn flown_levels_and_mach_numbers_are_within_a_band() {
+        for level in 200..=450 {
+            let feet = f64::from(level) * 100.0;
+            if level % 10 == 0 {
+                let [below, above] = [feet - 300.0, feet + 300.0].map(|ft| LEVEL_BANDS_FT.of(ft));
+                assert_eq!(below, above, "FL{level}");
+            }
+        }
+        for hundredths in 60..=92 {
+            let mach = f64::from(hundredths) / 100.0;
+            let [below, above] = [mach - 0.004, mach + 0.004].map(|mach| MACH_BANDS.of(mach));
+            assert_eq!(below, above, "Mach {mach}");
+        }
+    }
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "decimals, each the nearest double")]
     fn bands_are_half_open_decimals() {
-        assert_eq!(band_of(0.80, MACH_BAND), 40);
-        assert_eq!(band_of(0.7999, MACH_BAND), 39);
-        assert_eq!(band_of(PressureAltitude::meters(10_668.0).to_feet(), LEVEL_BAND_FT), 17);
+        let of_mach = |mach: f64| MACH_BANDS.edges(MACH_BANDS.of(mach));
+        assert_eq!(of_mach(0.78), (0.775, 0.795));
+        assert_eq!(of_mach(0.775), (0.775, 0.795));
+        assert_eq!(of_mach(0.7749), (0.755, 0.775));
+        let level_ft = PressureAltitude::meters(10_668.0).to_feet();
+        assert_eq!(LEVEL_BANDS_FT.edges(LEVEL_BANDS_FT.of(level_ft)), (34_500.0, 36_500.0));
     }
 }
