@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 
 use flight::Timestamp;
 use maud::{Markup, html};
-use pipeline::monitoring::{Figure, MonitorDocument, TailDocument, monitored_fuel_factor_percent};
+use pipeline::monitoring::{
+    CostDocument, Figure, MonitorDocument, TailDocument, monitored_fuel_factor_percent,
+};
 
 use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
 use crate::frame::framed;
@@ -140,13 +142,28 @@ fn fleet(document: &MonitorDocument) -> Markup {
     }
 }
 
+/// What fuel beyond the prediction amounts to in a year, by the present level.
+const A_YEAR: [(&str, fn(&CostDocument) -> Option<f64>); 3] = [
+    ("kg fuel/year now", |cost| cost.fuel_kg_per_year),
+    ("kg CO₂/year now", |cost| cost.co2_kg_per_year),
+    ("price/year now", |cost| cost.price_per_year),
+];
+
 fn table(tails: &[(usize, &TailDocument)]) -> Markup {
+    let of_any = |of: fn(&CostDocument) -> Option<f64>| {
+        tails.iter().any(|(_, tail)| of(&tail.cost).is_some())
+    };
+    // Fuel a year alone follows from that of a flight.
+    let follows: Vec<_> = A_YEAR[1..].iter().filter(|(_, of)| of_any(*of)).collect();
+    let a_year: Vec<_> =
+        A_YEAR[..1].iter().filter(|_| !follows.is_empty()).chain(follows.clone()).collect();
     html! {
         table.fleet.sort.data data-name="monitor" {
             thead {
                 tr {
                     th scope="col" { "tail" } th scope="col" { "flights" } th scope="col" { "level now, %" }
                     th scope="col" { "factor now, %" } th scope="col" { "kg/flight now" } th scope="col" { "DSR, all flights, %" }
+                    @for (name, _) in &a_year { th scope="col" { (name) } }
                     th scope="col" { "trend, %/year" } th scope="col" { "last change" }
                 }
             }
@@ -159,6 +176,12 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
                         td data-v=(tail.airbus.fuel_factor_percent.value) { (signed_tenths(tail.airbus.entered_fuel_factor_percent())) }
                         td data-v=(tail.cost.fuel_kg_per_flight) { (signed_tenths(tail.cost.fuel_kg_per_flight)) }
                         td data-v=(tail.airbus.specific_range_deviation_percent) { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
+                        @for (_, of) in &a_year {
+                            @match of(&tail.cost) {
+                                Some(value) => { td data-v=(value) { (format!("{value:+.0}")) } }
+                                None => { td { "–" } }
+                            }
+                        }
                         td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
                         td {
                             @match tail.changes.iter().rfind(|change| change.engine.is_none()) {

@@ -2,6 +2,7 @@
 
 use monitor::{Estimate, FleetMean, airbus, fleet_mean};
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::flights::MeanConditions;
 
@@ -368,18 +369,26 @@ fn fleet(aircraft_type: &str, tails: &[TailDocument]) -> Option<FleetDocument> {
             Some(FleetMonthDocument {
                 month: name.to_owned(),
                 tails: found.tails,
-                deviation_percent: found.mean.into(),
+                deviation_percent: of_tails(&found),
             })
         })
         .collect();
     Some(FleetDocument {
         aircraft_type: aircraft_type.to_owned(),
         tails: deviation.tails,
-        deviation_percent: deviation.mean.into(),
+        deviation_percent: of_tails(&deviation),
         between_tails_percent: deviation.between_tails,
-        trend_percent_per_year: trend.mean.into(),
+        trend_percent_per_year: of_tails(&trend),
         months,
     })
+}
+
+/// A mean over tails with its interval: Student's, and of a tail alone its own.
+fn of_tails(found: &FleetMean) -> Figure {
+    let student = StudentsT::new(0.0, 1.0, found.freedom() as f64).ok();
+    let factor = student.map_or(monitor::NORMAL_95, |student| student.inverse_cdf(0.975));
+    let (value, half) = (found.mean.value, factor * found.mean.deviation);
+    Figure { value, ci95: [value - half, value + half] }
 }
 
 fn estimate(figure: &Figure) -> Estimate {
