@@ -197,7 +197,9 @@ pub(crate) fn before_learning(view: &TailView, place: &Place<'_>) -> Markup {
             figcaption {
                 b { "Each flight before it was learnt." }
                 " What the model would have predicted on the day; over the later half of the flights " (signed(later.mean))
-                " % in the mean, " (plain(later.std)) " % of scatter between flights."
+                " % in the mean"
+                @if later.std.is_some() { ", " (plain(later.std)) " % of scatter between flights" }
+                "."
             }
             (legend(&[
                 (Key::Mark(Mark::Ring), BEFORE, "initial model"),
@@ -216,7 +218,7 @@ pub(crate) fn flights_apart(view: &TailView) -> Markup {
             figure {
                 figcaption {
                     b { "Flights far from the others." }
-                    " Mean error " @if view.adapted { "before " } "farthest from the middle one (median, "
+                    " Mean error " @if view.adapted { "before " } "farthest from the median ("
                     (signed(Some(median))) " %)."
                     @if view.adapted {
                         " Not “after”: the final table has also learnt from a flight that was recorded wrongly."
@@ -249,14 +251,20 @@ pub(crate) fn flights_apart(view: &TailView) -> Markup {
     }
 }
 
-/// Median of the flights' mean errors before (for an even number the upper middle one), and the flights farthest from
-/// it. Stable: of equally far ones the earlier is listed first.
+/// Fewer flights have none that is far from the others.
+const FEWEST_FOR_APART: usize = 3;
+
+/// Median of the flights' mean errors before, and the flights farthest from it. Stable: of equally far ones the earlier is listed first.
 fn apart(view: &TailView) -> (f64, Vec<&Flight>) {
     let mut flights: Vec<(f64, &Flight)> =
         view.flights.iter().filter_map(|flight| Some((flight.before.mean?, flight))).collect();
     let mut means: Vec<f64> = flights.iter().map(|(mean, _)| *mean).collect();
     means.sort_unstable_by(f64::total_cmp);
-    let median = means.get(means.len() / 2).copied().unwrap_or(0.0);
+    if means.len() < FEWEST_FOR_APART {
+        return (0.0, Vec::new());
+    }
+    let (lower, upper) = (means[(means.len() - 1) / 2], means[means.len() / 2]);
+    let median = f64::midpoint(lower, upper);
     let distance = |mean: f64| (mean - median).abs();
     flights.sort_by(|(one, _), (other, _)| distance(*other).total_cmp(&distance(*one)));
     flights.truncate(FLIGHTS_NAMED);

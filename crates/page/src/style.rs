@@ -35,6 +35,7 @@ thead tr:first-child th:first-child { text-align: left; }
 th[scope=colgroup] { text-align: center; }
 .fleet { width: 100%; } .fleet th, .fleet td { padding-inline: .3rem; }
 .fleet tbody th, .fleet tbody td { white-space: nowrap; }
+.fleet tbody td.words { white-space: normal; text-align: left; min-width: 14rem; }
 @media (max-width: 1000px) { body { padding-inline: .8rem; } }
 .fleet tbody tr:hover { background: var(--card); }
 .fleet tfoot th, .fleet tfoot td { border-top: 1.5px solid var(--ink); border-bottom: 0; }

@@ -193,7 +193,7 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     html! {
         tr {
             th scope="row" { a href=(format!("#{}", tail.id)) { (tail.diagnosed.name()) } }
-            td style="text-align:left" { (short_of(tail)) }
+            td.words { (short_of(tail)) }
             td { @if let Some(found) = diagnosis.verdict.found() { (format!("{:.2}", found.probability)) } @else { "–" } }
             @if is_computed {
                 td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
