@@ -1,7 +1,7 @@
 //! A model's drag table, and the polynomial behind it, as tables of named columns.
 
 use adapt::bayes::{PolynomialError, polynomial_export};
-use lut::surface::{self, FitError};
+use lut::surface::{self, Basis, COEFFICIENTS, FitError};
 
 use crate::columns::Columns;
 use crate::model_file::ModelFile;
@@ -62,6 +62,7 @@ pub fn polynomial(model: &ModelFile) -> Result<Columns, ModelPolynomialError> {
     };
     let mut columns = Columns::default();
     columns.count("coefficient", 0..surface.coefficients.len() as u64);
+    columns.text("term", terms(basis).map(str::to_owned).into_iter());
     columns.number("value", surface.coefficients.iter().map(|value| Some(*value)));
     if let Some(covariance) = covariance {
         for other in 0..surface.coefficients.len() {
@@ -72,4 +73,12 @@ pub fn polynomial(model: &ModelFile) -> Result<Columns, ModelPolynomialError> {
         }
     }
     Ok(columns)
+}
+
+/// What each coefficient of a drag polynomial multiplies, of Mach number M and lift coefficient CL.
+const fn terms(basis: Basis) -> [&'static str; COEFFICIENTS] {
+    match basis {
+        Basis::SeparableQuadratic => ["1", "M", "M^2", "CL^2", "M CL^2", "M^2 CL^2"],
+        Basis::FullQuadratic => ["1", "M", "CL", "M^2", "M CL", "CL^2"],
+    }
 }
