@@ -94,6 +94,13 @@ fn loosened(
     *limits = limits.with_limit(criterion, LOOSER * limit);
     let looser = tally_of(&prepare(&reports, progress)?.flights);
     let unit = criterion.unit();
+    if (looser.segments, looser.samples_kept) == (total.segments, total.samples_kept) {
+        return Ok(format!(
+            "{criterion} costs most: {} fail it alone; {} {unit} in place of {limit} {unit} would give no more.\n\n",
+            counted(total.cost(criterion).unsteady_alone, "sample"),
+            LOOSER * limit,
+        ));
+    }
     Ok(format!(
         "{criterion} costs most: {} fail it alone. {} {unit} in place of {limit} {unit} would give {} with {} of {} samples\n(now {} with {}); a looser limit lets less steady flight into the means.\n\n",
         counted(total.cost(criterion).unsteady_alone, "sample"),
