@@ -75,6 +75,34 @@ pub struct FlightCheck {
     pub findings: Vec<DataFinding>,
 }
 
+/// Share of a flight's rows from which those left out are worth a word. Our choice: a drop-out costs less.
+const LEFT_OUT_SHARE: f64 = 0.05;
+
+impl FlightCheck {
+    /// The same with what is to be said of so many rows that a mapping left out beside those of the report.
+    #[must_use]
+    pub fn with_rows_left_out(mut self, rows: usize, left_out: usize) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "rows are far fewer than 2^53")]
+        let share = left_out as f64 / (rows + left_out).max(1) as f64;
+        if share > LEFT_OUT_SHARE {
+            let draft = Draft {
+                severity: Severity::Warning,
+                code: "rows-left-out",
+                size: 100.0 * share,
+                unit: "%",
+                message: format!(
+                    "{left_out} rows that cannot be read or hold a number out of range are left out, {rows} are used"
+                ),
+                likely_cause: "the form of time or of a number, or its unit".to_owned(),
+                remedy: "look at the first of them, which the warning above names".to_owned(),
+            };
+            self.findings.push(draft.for_flight(&self.identity));
+            self.findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
+        }
+        self
+    }
+}
+
 /// Checks one report by itself.
 #[must_use]
 pub fn check_report(report: &Report) -> FlightCheck {

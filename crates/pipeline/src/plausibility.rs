@@ -140,6 +140,7 @@ pub fn set_aside_absurd<'m>(
     let of_book = judged(with_books);
     serious.extend(of_book.iter().map(|judged| judged.finding.clone()));
     serious.retain(|finding| finding.severity >= Severity::Serious);
+    book::decide_by_fuel_used(&mut serious);
     let told = if serious.is_empty() { String::new() } else { crate::check::to_text(&serious) };
     if absurd == Absurd::Accept {
         return told;
@@ -148,9 +149,12 @@ pub fn set_aside_absurd<'m>(
         .into_iter()
         .filter(|judged| judged.is_slip)
         .map(|Judged { finding, .. }| {
+            // What fuel used decides is in what is told.
+            let of_it = |one: &&DataFinding| one.tail == finding.tail && one.code == finding.code;
+            let cause = &serious.iter().find(of_it).unwrap_or(&finding).likely_cause;
             let reason = format!(
-                "{}: {}; likely {}; --accept uses it nevertheless",
-                finding.tail, finding.message, finding.likely_cause
+                "{}: {}; likely {cause}; --accept uses it nevertheless",
+                finding.tail, finding.message
             );
             (finding.tail, reason)
         })

@@ -236,10 +236,11 @@ fn reduce(
     content: String,
     (criteria, checks): (&TrimCriteria, Checks),
 ) -> Result<FlightRead, String> {
-    let Parsed { report, findings } = parsed;
+    let Parsed { report, findings, left_out } = parsed;
     let notes = notes_of(path, findings);
     let end = end_of(&report)?;
-    let check = (checks == Checks::Made).then(|| check_report(&report));
+    let check = (checks == Checks::Made)
+        .then(|| check_report(&report).with_rows_left_out(report.len(), left_out));
     let reduced =
         ReducedFlight::from_report(report, criteria, notes).map_err(|error| error.to_string())?;
     let reduced = ReducedFlight { check, ..reduced };
@@ -256,7 +257,10 @@ fn reduce_points(
     let end = end_of(&points.parsed.report)?;
     // With another averaging time the same numbers say something else.
     let content = format!("{}:{}", content_of(&points.parsed.report), points.averaged_over_s);
-    let check = (checks == Checks::Made).then(|| check_points(&points.parsed.report));
+    let check = (checks == Checks::Made).then(|| {
+        let Parsed { report, left_out, .. } = &points.parsed;
+        check_points(report).with_rows_left_out(report.len(), *left_out)
+    });
     let reduced =
         ReducedFlight::from_points(points, criteria, notes).map_err(|error| error.to_string())?;
     let reduced = ReducedFlight { check, ..reduced };

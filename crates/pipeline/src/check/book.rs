@@ -2,7 +2,8 @@
 
 use flight::Severity;
 
-use super::{DataFinding, mean};
+use super::fuel::USED_AGAINST_FLOW;
+use super::{DataFinding, mean, slips};
 use crate::segments_table::Evaluated;
 
 /// Code of the finding that a tail is farther off the book than an aircraft can be.
@@ -32,6 +33,44 @@ pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFind
         .into_iter()
         .flatten()
         .collect()
+}
+
+/// Whether a finding is one against a book: those that need no model are more certain.
+#[must_use]
+pub fn is_of_book(finding: &DataFinding) -> bool {
+    [DEVIATION, OUTSIDE].contains(&finding.code)
+}
+
+/// What fuel used against fuel flow determines without a model decides what is wrong where a tail is off its book: the flow, if the book
+/// is met by the flow that fuel used states, else the mass, of which fuel used is a part in the same unit.
+pub fn decide_by_fuel_used(findings: &mut [DataFinding]) {
+    let of_book: Vec<(String, f64)> = findings
+        .iter()
+        .filter(|finding| finding.code == DEVIATION)
+        .map(|finding| (finding.tail.clone(), finding.size))
+        .collect();
+    for (tail, percent) in of_book {
+        let of_tail = |finding: &&mut DataFinding| finding.tail == tail;
+        let is_of_fuel = |finding: &&mut DataFinding| finding.code == USED_AGAINST_FLOW;
+        let mut of_fuel: Vec<&mut DataFinding> =
+            findings.iter_mut().filter(of_tail).filter(is_of_fuel).collect();
+        let Some(ratio) = mean(of_fuel.iter().map(|finding| finding.size)) else { continue };
+        let left_percent = 100.0 * ((1.0 + percent / 100.0) * ratio - 1.0);
+        let (cause, remedy) = if left_percent.abs() <= PLAUSIBLE_PERCENT {
+            (of_fuel[0].likely_cause.clone(), of_fuel[0].remedy.clone())
+        } else if let Some((cause, remedy)) = slips::of_mass(ratio) {
+            for finding in &mut of_fuel {
+                (finding.likely_cause, finding.remedy) = (cause.to_owned(), remedy.to_owned());
+            }
+            (cause.to_owned(), remedy.to_owned())
+        } else {
+            continue;
+        };
+        let deviations = findings.iter_mut().filter(|finding| finding.code == DEVIATION);
+        for finding in deviations.filter(of_tail) {
+            (finding.likely_cause, finding.remedy) = (cause.clone(), remedy.clone());
+        }
+    }
 }
 
 /// Whether flights are as far off the book, within [`PLAUSIBLE_PERCENT`], as all that was learnt of the tail before: then it is the
@@ -125,4 +164,42 @@ fn outside(tail: &str, inside: usize, all: usize, lift: Option<f64>) -> Option<D
         likely_cause: "mass, ALT or MACH in another unit, or a table that is too small".to_owned(),
         remedy: "check the units, or widen `table` in the aircraft file".to_owned(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(code: &'static str, size: f64) -> DataFinding {
+        DataFinding {
+            severity: Severity::Serious,
+            code,
+            tail: "T".to_owned(),
+            flight: String::new(),
+            start: String::new(),
+            size,
+            unit: "-",
+            message: String::new(),
+            likely_cause: code.to_owned(),
+            remedy: format!("mend {code}"),
+        }
+    }
+
+    /// Of a mass in kg read as lb, half of which drag predicts: +57 % off the book, fuel used 0.4536 of what flows. Were the flow at fault
+    /// it would be +120 %. Of a total given for each of two engines: +105 %, and 0.505.
+    #[test]
+    fn fuel_used_decides_between_mass_and_flow() {
+        let mut mass = [finding(DEVIATION, 57.4), finding(USED_AGAINST_FLOW, 0.4536)];
+        decide_by_fuel_used(&mut mass);
+        for finding in &mass {
+            assert!(finding.remedy.starts_with("unit kg"), "{}", finding.remedy);
+        }
+        let mut flow = [finding(DEVIATION, 105.5), finding(USED_AGAINST_FLOW, 0.505)];
+        decide_by_fuel_used(&mut flow);
+        assert_eq!(flow[0].remedy, "mend fuel-used-against-flow");
+        assert_eq!(flow[1].remedy, "mend fuel-used-against-flow");
+        let mut alone = [finding(DEVIATION, 57.4)];
+        decide_by_fuel_used(&mut alone);
+        assert_eq!(alone[0].remedy, "mend book-deviation");
+    }
 }

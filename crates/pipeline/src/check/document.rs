@@ -21,7 +21,7 @@ pub struct CheckDocument {
     pub reports: ReportsSummary,
     /// How many findings of each severity.
     pub counts: Counts,
-    /// The findings, the serious ones first, then by tail, flight and kind.
+    /// The findings, the serious ones first, then by tail, those that need no model before those against a book.
     pub findings: Vec<DataFinding>,
 }
 
@@ -40,9 +40,12 @@ impl CheckDocument {
     /// Puts findings in order.
     #[must_use]
     pub fn new(reports: ReportsSummary, mut findings: Vec<DataFinding>) -> Self {
+        book::decide_by_fuel_used(&mut findings);
         tell_consequences(&mut findings);
-        let key =
-            |one: &DataFinding| (one.tail.clone(), one.code, one.start.clone(), one.flight.clone());
+        let key = |one: &DataFinding| {
+            let of_book = book::is_of_book(one);
+            (one.tail.clone(), of_book, one.code, one.start.clone(), one.flight.clone())
+        };
         findings.sort_by(|one, other| {
             other.severity.cmp(&one.severity).then(key(one).cmp(&key(other)))
         });
@@ -106,11 +109,12 @@ pub fn to_text(findings: &[DataFinding]) -> String {
     let mut groups: BTreeMap<_, Vec<&DataFinding>> = BTreeMap::new();
     for finding in findings {
         let order = std::cmp::Reverse(finding.severity);
-        let key = (order, &finding.tail, finding.code, &finding.likely_cause);
+        let of_book = book::is_of_book(finding);
+        let key = (order, &finding.tail, of_book, finding.code, &finding.likely_cause);
         groups.entry(key).or_default().push(finding);
     }
     let mut text = String::new();
-    for ((severity, tail, code, cause), group) in groups {
+    for ((severity, tail, _, code, cause), group) in groups {
         let flights: BTreeSet<_> =
             group.iter().map(|finding| (&finding.start, &finding.flight)).collect();
         let first = group[0];

@@ -20,6 +20,9 @@ const ASYMMETRY_SHARE: f64 = 0.05;
 /// Rotor speeds that are called the same, % of rated speed.
 const SAME_ROTOR_SPEED_PERCENT: f64 = 0.6;
 
+/// Code of the finding that fuel used and fuel flow do not add up.
+pub(super) const USED_AGAINST_FLOW: &str = "fuel-used-against-flow";
+
 pub(super) fn check(report: &Report, flow_kg_s: &[f64]) -> Vec<Draft> {
     let mut findings: Vec<Draft> = used_against_flow(report, flow_kg_s).into_iter().collect();
     findings.extend(quantity_against_flow(report, flow_kg_s));
@@ -50,7 +53,7 @@ fn used_against_flow(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
     let serious = (ratio - 1.0).abs() > SERIOUS_SHARE + allowed;
     Some(Draft {
         severity: if serious { Severity::Serious } else { Severity::Warning },
-        code: "fuel-used-against-flow",
+        code: USED_AGAINST_FLOW,
         size: ratio,
         unit: "-",
         message: format!(

@@ -116,7 +116,7 @@ fn masses(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
             100.0 * hourly
         ),
         likely_cause,
-        "compare the units of ZFW, FOB and WF with their sources",
+        "compare the units of WF and of the mass (ZFW and FOB, or the column that a mapping derives them from) with their sources",
     ))
 }
 

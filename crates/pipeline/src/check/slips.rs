@@ -63,6 +63,24 @@ pub(super) const FUEL: [Slip; 5] = [
     slip(3600.0, "fuel flow per second declared as per hour", "unit kg/s for WF"),
 ];
 
+/// What a ratio of fuel used to the integral of fuel flow means where flow is right: cause and remedy for the mass, of which fuel used is
+/// a part.
+pub(super) fn of_mass(ratio: f64) -> Option<(&'static str, &'static str)> {
+    if is_near(ratio, KILOGRAMS_PER_POUND) {
+        Some((
+            "mass in kg declared as lb",
+            "unit kg for the mass: ZFW, FOB and FU, or the column that a mapping derives them from",
+        ))
+    } else if is_near(ratio, 1.0 / KILOGRAMS_PER_POUND) {
+        Some((
+            "mass in lb declared as kg",
+            "unit lb for the mass: ZFW, FOB and FU, or the column that a mapping derives them from",
+        ))
+    } else {
+        None
+    }
+}
+
 /// Of a length.
 pub(super) const FEET_PER_METER: f64 = 1.0 / METERS_PER_FOOT;
 
