@@ -9,6 +9,8 @@ use super::neutral;
 const MOST_BYTES: u64 = 16 << 20;
 /// So much of a line is shown about the place.
 const SHOWN: usize = 72;
+/// Where the line goes on.
+const CUT: char = '…';
 
 /// A line, and the place in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,11 +61,15 @@ impl Excerpt {
         let from = if letters.len() <= SHOWN { 0 } else { first.saturating_sub(SHOWN / 3) };
         let to = letters.len().min(from + SHOWN);
         let count = count.min(to.saturating_sub(first)).max(1);
-        Some(Self {
-            line,
-            shown: letters[from..to].iter().collect(),
-            underlined: (first - from, count),
-        })
+        let mut shown = letters[from..to].to_vec();
+        // A part of a number is not to be taken for one.
+        if from > 0 {
+            shown[0] = CUT;
+        }
+        if let Some(last) = shown.last_mut().filter(|_| to < letters.len() && first + count < to) {
+            *last = CUT;
+        }
+        Some(Self { line, shown: shown.into_iter().collect(), underlined: (first - from, count) })
     }
 
     /// Two lines: the file's, and one that underlines the place.
@@ -202,7 +208,9 @@ mod tests {
         let long = format!("{} here {}", "x".repeat(200), "y".repeat(200));
         let shown = Excerpt::of_line(&long, 1, Some(202), "").unwrap();
         assert_eq!(shown.shown.chars().count(), SHOWN);
-        assert_eq!(&shown.shown[shown.underlined.0..][..4], "here");
+        let here: String = shown.shown.chars().skip(shown.underlined.0).take(4).collect();
+        assert_eq!(here, "here");
+        assert!(shown.shown.starts_with("…x") && shown.shown.ends_with("y…"), "{}", shown.shown);
         // Beyond the end of the line: one mark there.
         assert_eq!(drawn("abc", Some(4), ""), "  12 │ abc\n     │    ^\n");
     }
