@@ -142,17 +142,18 @@ fn fleet(document: &MonitorDocument) -> Markup {
     }
 }
 
+/// A figure of a tail's cost, where there is one.
+type OfCost = fn(&CostDocument) -> Option<f64>;
+
 /// What fuel beyond the prediction amounts to in a year, by the present level.
-const A_YEAR: [(&str, fn(&CostDocument) -> Option<f64>); 3] = [
+const A_YEAR: [(&str, OfCost); 3] = [
     ("kg fuel/year now", |cost| cost.fuel_kg_per_year),
     ("kg CO₂/year now", |cost| cost.co2_kg_per_year),
     ("price/year now", |cost| cost.price_per_year),
 ];
 
 fn table(tails: &[(usize, &TailDocument)]) -> Markup {
-    let of_any = |of: fn(&CostDocument) -> Option<f64>| {
-        tails.iter().any(|(_, tail)| of(&tail.cost).is_some())
-    };
+    let of_any = |of: OfCost| tails.iter().any(|(_, tail)| of(&tail.cost).is_some());
     // Fuel a year alone follows from that of a flight.
     let follows: Vec<_> = A_YEAR[1..].iter().filter(|(_, of)| of_any(*of)).collect();
     let a_year: Vec<_> =

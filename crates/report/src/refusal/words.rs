@@ -174,9 +174,7 @@ impl fmt::Display for RefusalKind {
             Self::GrossMassRises { smallest_kg, admissible_rise_kg, gap_s } => {
                 write_mass_rise(f, *smallest_kg, *admissible_rise_kg, *gap_s)
             }
-            Self::GrossMassJumps { around_kg } => {
-                write!(f, "gross mass as in the rows around it, {around_kg} kg")
-            }
+            Self::GrossMassJumps { around_kg } => write_mass_around(f, *around_kg),
             Self::TableUnreadable { reason } => write!(f, "rows that can be read ({reason})"),
             Self::PointsForSamples => f.write_str(SAMPLES),
             Self::FlightCameBack { last_line, limit } => write_came_back(f, *last_line, *limit),
@@ -202,6 +200,10 @@ fn write_came_back(
         f,
         "no more rows of this flight, which ended in line {last_line} ({limit}): sort the table by tail, flight and time"
     )
+}
+
+fn write_mass_around(f: &mut fmt::Formatter<'_>, around_kg: f64) -> fmt::Result {
+    write!(f, "gross mass as in the rows around it, {around_kg} kg")
 }
 
 fn write_mass_rise(

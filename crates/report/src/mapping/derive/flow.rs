@@ -64,7 +64,7 @@ impl Part<'_> {
     pub(super) fn largest_total_flow_kg_s(&self) -> Option<f64> {
         let is_of_engine = |(column, _): &&(Column, _)| matches!(column, Column::N2(_));
         let engines = match self.plan.recorded.iter().filter(is_of_engine).count() {
-            0 => usize::from(MAXIMUM_ENGINES),
+            0 => MAXIMUM_ENGINES,
             engines => engines,
         };
         Column::FuelFlowTotal.range().maximum.map(|one| one * engines as f64)

@@ -17,14 +17,12 @@ const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
 impl Part<'_> {
     pub(super) fn load(&self, masses: Option<&GrossMasses>) -> Result<Load, Refusal> {
         match &self.plan.mass {
-            MassPlan::GrossMass { .. } | MassPlan::ZeroFuelAndTanks { .. } => match masses {
-                Some(masses) => self.load_of_gross_mass(masses),
+            MassPlan::GrossMass { .. } | MassPlan::ZeroFuelAndTanks { .. } => {
                 // Either plan has masses.
-                None => {
-                    let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
-                    Err(self.refuse(0, 0, Found::Rows(0), kind))
-                }
-            },
+                let none = RefusalKind::MassNotPositive { mass: "gross mass" };
+                let refused = || self.refuse(0, 0, Found::Rows(0), none);
+                self.load_of_gross_mass(masses.ok_or_else(refused)?)
+            }
             MassPlan::StartMass { gross_mass } => self.load_of_integrated_flow(gross_mass),
             MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
                 let used_kg = |row| self.sum_kg(fuel_used, row);

@@ -74,6 +74,19 @@ impl Part<'_> {
             );
             findings.push(note(Severity::Note, "mapped-fuel-used", message));
         }
+        self.findings_of_rows(load, surplus, &mut findings);
+        findings
+            .extend(self.cut().map(|message| note(Severity::Note, "mapped-cruise-cut", message)));
+        findings
+    }
+
+    /// Rows that are left out, or filled.
+    fn findings_of_rows(&self, load: &Load, surplus: &[Surplus], findings: &mut Vec<Finding>) {
+        let first_line = Some(self.recording.lines.at(self.rows.at(0)));
+        let note = |code, message| {
+            let severity = Severity::Note;
+            Finding { severity, code, message, line: first_line }
+        };
         if self.recording.left_out > 0 {
             findings.push(Finding {
                 severity: Severity::Warning,
@@ -102,14 +115,14 @@ impl Part<'_> {
         }
         for (column, filled) in &self.recording.filled {
             let message = format!("{column:?} is held or interpolated in {filled} rows");
-            findings.push(note(Severity::Note, "mapped-filled", message));
+            findings.push(note("mapped-filled", message));
         }
         if load.bridged > 0 {
             let message = format!(
                 "{} with a fuel flow out of range or, in flight, of zero: mass follows a straight line over them",
                 counted(load.bridged, "row")
             );
-            findings.push(note(Severity::Note, "mapped-flow-bridged", message));
+            findings.push(note("mapped-flow-bridged", message));
         }
         if let Some((row, column)) = surplus.first() {
             findings.push(Finding {
@@ -118,17 +131,11 @@ impl Part<'_> {
                 message: format!(
                     "{} left out for a number out of range, the first for its {}",
                     counted(surplus.len(), "row"),
-                    column.map_or_else(
-                        || "gross mass".to_owned(),
-                        |column| column.name().to_string()
-                    )
+                    column.map_or_else(|| "gross mass".to_owned(), Column::name)
                 ),
                 line: Some(self.recording.lines.at(*row)),
             });
         }
-        findings
-            .extend(self.cut().map(|message| note(Severity::Note, "mapped-cruise-cut", message)));
-        findings
     }
 
     /// What of the recording is level cruise, where it is not all.

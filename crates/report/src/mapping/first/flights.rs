@@ -45,9 +45,13 @@ pub(super) fn each_flight(
     while let Some(piece) = source.next_piece(&mut stream).ok()? {
         let rows = converter.rows(piece);
         let (flights, _) = stream.add(rows);
-        flights.into_iter().for_each(|flight| read(&converter, flight));
+        for flight in flights {
+            read(&converter, flight);
+        }
     }
-    stream.finish().into_iter().for_each(|flight| read(&converter, flight));
+    for flight in stream.finish() {
+        read(&converter, flight);
+    }
     Some(())
 }
 

@@ -102,10 +102,8 @@ impl Sources {
                 self.temperature = Some(TemperatureSource::Isa { deviation_k });
             }
             (column, source) => {
-                return Err(MappingError::SourceNotForQuantity {
-                    column,
-                    source_name: source.name(),
-                });
+                let source_name = source.name();
+                return Err(MappingError::SourceNotForQuantity { column, source_name });
             }
         }
         Ok(())
