@@ -251,7 +251,6 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::float_cmp, reason = "decimals, each the nearest double")]
     fn bands_are_half_open_decimals() {
         let of_mach = |mach: f64| MACH_BANDS.edges(MACH_BANDS.of(mach));
         assert_eq!(of_mach(0.78), (0.775, 0.795));
