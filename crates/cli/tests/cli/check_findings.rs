@@ -232,6 +232,7 @@ fn every_kind_of_finding_is_planted() {
     // The page lists every kind; each of them is expected of some slip.
     let planted: BTreeSet<&str> = (SLIPS.iter().chain(&MORE_SLIPS).map(|(_, _, code)| *code))
         .chain(OF_SEVERAL_FLIGHTS)
+        .chain(["rows-left-out"])
         .collect();
     let page = std::fs::read_to_string(root().join("docs/src/guides/check.md")).unwrap();
     let listed: Vec<&str> = page
@@ -277,4 +278,31 @@ fn layouts_read_with_their_first_mapping_have_no_finding() {
         .expect(0);
         assert_eq!(codes(&document(&json)), Vec::<String>::new(), "{}", ran.stdout);
     }
+}
+
+/// A tenth of the rows of a recording cannot be read.
+#[test]
+fn rows_that_a_mapping_leaves_out_are_a_finding() {
+    let folder = tempfile::tempdir().unwrap();
+    let [recording, mapping, json] =
+        ["R.csv", "M.ron", "check.json"].map(|name| folder.path().join(name));
+    let path = root().join("fixtures/layouts/01_named_units.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let spoilt = |(row, line): (usize, &str)| {
+        if row % 10 == 5 { "oops\n".to_owned() } else { format!("{line}\n") }
+    };
+    std::fs::write(&recording, text.lines().enumerate().map(spoilt).collect::<String>()).unwrap();
+    let made: [&std::ffi::OsStr; 4] =
+        ["mapping".as_ref(), recording.as_ref(), "-o".as_ref(), mapping.as_ref()];
+    cruisefit(&made).expect(0);
+    let checked: [&std::ffi::OsStr; 6] = [
+        "check".as_ref(),
+        recording.as_ref(),
+        "--mapping".as_ref(),
+        mapping.as_ref(),
+        "--json".as_ref(),
+        json.as_ref(),
+    ];
+    cruisefit(&checked).expect(0);
+    assert_eq!(codes(&document(&json)), ["rows-left-out"]);
 }

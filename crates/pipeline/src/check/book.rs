@@ -56,16 +56,16 @@ pub fn decide_by_fuel_used(findings: &mut [DataFinding]) {
             findings.iter_mut().filter(of_tail).filter(is_of_fuel).collect();
         let Some(ratio) = mean(of_fuel.iter().map(|finding| finding.size)) else { continue };
         let left_percent = 100.0 * ((1.0 + percent / 100.0) * ratio - 1.0);
-        let (cause, remedy) = if left_percent.abs() <= PLAUSIBLE_PERCENT {
-            (of_fuel[0].likely_cause.clone(), of_fuel[0].remedy.clone())
-        } else if let Some((cause, remedy)) = slips::of_mass(ratio) {
-            for finding in &mut of_fuel {
-                (finding.likely_cause, finding.remedy) = (cause.to_owned(), remedy.to_owned());
-            }
-            (cause.to_owned(), remedy.to_owned())
-        } else {
-            continue;
+        let is_flow = left_percent.abs() <= PLAUSIBLE_PERCENT;
+        let slip = if is_flow { slips::of_flow(ratio) } else { slips::of_mass(ratio) };
+        let (cause, remedy) = match slip {
+            Some((cause, remedy)) => (cause.to_owned(), remedy.to_owned()),
+            None if is_flow => (of_fuel[0].likely_cause.clone(), of_fuel[0].remedy.clone()),
+            None => continue,
         };
+        for finding in &mut of_fuel {
+            (finding.likely_cause, finding.remedy) = (cause.clone(), remedy.clone());
+        }
         let deviations = findings.iter_mut().filter(|finding| finding.code == DEVIATION);
         for finding in deviations.filter(of_tail) {
             (finding.likely_cause, finding.remedy) = (cause.clone(), remedy.clone());

@@ -63,6 +63,17 @@ pub(super) const FUEL: [Slip; 5] = [
     slip(3600.0, "fuel flow per second declared as per hour", "unit kg/s for WF"),
 ];
 
+/// What a ratio of fuel used to the integral of fuel flow means where fuel used is right: cause and remedy for the flow.
+pub(super) fn of_flow(ratio: f64) -> Option<(&'static str, &'static str)> {
+    if is_near(ratio, KILOGRAMS_PER_POUND) {
+        Some(("WF: lb/h declared as kg/h", "unit lb/h for WF"))
+    } else if is_near(ratio, 1.0 / KILOGRAMS_PER_POUND) {
+        Some(("WF: kg/h declared as lb/h", "unit kg/h for WF"))
+    } else {
+        None
+    }
+}
+
 /// What a ratio of fuel used to the integral of fuel flow means where flow is right: cause and remedy for the mass, of which fuel used is
 /// a part.
 pub(super) fn of_mass(ratio: f64) -> Option<(&'static str, &'static str)> {
