@@ -328,10 +328,7 @@ fn conclude(
         addition: named_addition(analysis, library, &verdict, *model.references()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
-        outside: OutsideLibrary {
-            looked_for_all: options.effects.is_empty() && options.without.is_empty(),
-            ..outside_library(&outside, found_forms, *model.references())
-        },
+        outside: outside_library(&outside, found_forms, (model, options)),
         held_out: unseen.as_ref().map_or_else(Vec::new, Shrinkage::by_flight),
         left_out: BTreeMap::new(),
         outliers: vec![],
@@ -383,18 +380,22 @@ fn percent(mean_square: f64) -> f64 {
 fn outside_library(
     outside: &Outside,
     mut forms: Vec<FoundForm>,
-    references: EffectReferences,
+    (model, options): (&EffectModel<'_>, &Options),
 ) -> OutsideLibrary {
     // What may have no size describes nothing.
     forms.retain(FoundForm::has_a_size);
     let form = forms.first().and_then(FoundForm::applied);
     OutsideLibrary {
         probability: outside.probability,
-        looked_for_all: true,
+        looked_for_all: options.effects.is_empty() && options.without.is_empty(),
         variable: outside.variable.map(|(variable, _)| variable),
         acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
         forms,
-        addition: form.map(|form| Addition { effects: vec![], form: Some(form), references }),
+        addition: form.map(|form| Addition {
+            effects: vec![],
+            form: Some(form),
+            references: *model.references(),
+        }),
     }
 }
 

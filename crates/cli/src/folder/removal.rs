@@ -13,7 +13,8 @@ pub(super) const LIST: &str = "REMOVED";
 
 /// The list of the files that one generation names and the next does not, a line each; empty where there are none.
 pub(super) fn no_longer_named(old: &State, new: &State) -> String {
-    files(old).difference(&files(new)).map(|file| format!("{file}\n")).collect()
+    let (old, new) = (files(old), files(new));
+    old.difference(&new).flat_map(|file| [*file, "\n"]).collect()
 }
 
 /// Removes the files of a waiting folder's list, and then the list. Files that have gone already are no error.

@@ -339,7 +339,7 @@ fn the_beginning_of_a_report_does_not_take_the_place_of_the_whole() {
     adapt(&model, &output, &[report(1), report(2)], &[]).expect(0);
     let learnt = bytes_below(&output)["segments/SIM-01.csv"].clone();
     let cut = changed(scratch.path(), 2, "cut.txt", |text| {
-        text.lines().take(30).map(|line| format!("{line}\n")).collect()
+        text.lines().take(30).flat_map(|line| [line, "\n"]).collect()
     });
     adapt(&model, &output, &[report(1), cut], &["--relearn"])
         .expect(1)
@@ -376,10 +376,10 @@ fn a_new_tail_learns_as_the_others_of_its_folder_do() {
     let new = changed(scratch.path(), 2, "new.txt", |text| text.replace("SIM-01", "SIM-02"));
     adapt(&model, &output, &[report(1)], &[]).expect(0);
     let before = bytes_below(&output);
-    adapt(&model, &output, &[new.clone()], &["--law", "paper"])
+    adapt(&model, &output, std::slice::from_ref(&new), &["--law", "paper"])
         .expect(2)
         .says("bayes against paper");
-    adapt(&model, &output, &[new.clone()], &["--criteria", "airbus-report-02-short"])
+    adapt(&model, &output, std::slice::from_ref(&new), &["--criteria", "airbus-report-02-short"])
         .expect(2)
         .says("trim criteria");
     assert_eq!(bytes_below(&output), before);

@@ -43,7 +43,7 @@ impl GaugeBurn {
         for run in samples.chunk_by(is_joined) {
             let mut read = run.iter().filter_map(|&i| Some((i, quantity[i]?)));
             let Some((first, full_kg)) = read.next() else { continue };
-            let Some((last, left_kg)) = read.last() else { continue };
+            let Some((last, left_kg)) = read.next_back() else { continue };
             gauged_kg += full_kg - left_kg;
             metered_kg += metered_between_kg(track, first, last);
             runs += 1.0;

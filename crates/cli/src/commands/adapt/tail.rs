@@ -175,13 +175,9 @@ impl Run<'_> {
 
     /// A tail that is left as it is, all of its reports refused.
     fn refuse(&self, tail: &str, paths: &[Box<Path>], reason: &str) -> TailOutcome {
-        let refuse = |path: &Box<Path>| {
-            RefusedReport::whole(
-                path.clone().into(),
-                format!("tail {tail} is not touched: {reason}"),
-            )
-        };
-        TailOutcome { refused: paths.iter().map(refuse).collect(), ..self.untouched(tail) }
+        let reason = format!("tail {tail} is not touched: {reason}");
+        let refused = paths.iter().map(|path| RefusedReport::whole(path.to_path_buf(), &reason));
+        TailOutcome { refused: refused.collect(), ..self.untouched(tail) }
     }
 
     fn sorting(&self, tail: &str, known: Vec<KnownFlight>, stored: Option<&StoredTail>) -> Sorting {
