@@ -28,8 +28,8 @@ def later(**changes: str) -> cruisefit.Segments:
 
 
 def test_what_is_many_standard_deviations_away_is_not_called_like_the_cause(learnt):
-    """More drag everywhere: a static-pressure error is open as part of a pair, and alone nine standard deviations away."""
-    planted = ('id: "tsfc_engine_2", size: 3.0', 'id: "drag_factor", size: 2.0')
+    """A heavier aircraft: drag that ages is open as part of a pair, and alone more than four standard deviations away."""
+    planted = ('id: "tsfc_engine_2", size: 3.0', 'id: "zero_fuel_mass_bias", size: 300.0')
     (found,) = learnt.diagnose(later(planted=planted)).diagnoses
     far = {one["from"] for one in found.record["verdict"]["separations"] if one["distance_now"] > 3.0}
     assert far and far <= set(found.verdict.effect_class)

@@ -251,19 +251,15 @@ fn class_and_credible(
     posteriors: &[&Posterior],
 ) -> [Vec<EffectId>; 2] {
     let &Findings { library, distances, .. } = findings;
-    let mut class = class_of(distances, library, top);
-    if let Some((column, size)) = top.column_and_size() {
-        let alike = distances.alike_in_form(library, column, size).into_iter();
-        for id in alike.map(|effect| library.effects[effect].id) {
-            if !class.contains(&id) {
-                class.push(id);
-            }
-        }
-    }
+    let class = class_of(distances, library, top);
     // What acts with it is what it is, and no other name of it.
     let together = set_of(findings.analysis, library, top);
-    let mut others = Vec::new();
-    // What only the prior sizes decide is open as well.
+    // What differs from it by less than laws may, and what only the prior sizes decide, is open as well.
+    let alike = top
+        .column_and_size()
+        .map_or_else(Vec::new, |(column, size)| distances.alike_in_form(library, column, size));
+    let alike = alike.into_iter().map(|effect| library.effects[effect].id);
+    let mut others: Vec<EffectId> = alike.filter(|id| !class.contains(id)).collect();
     let by_size = posteriors.iter().copied().filter(|p| p.flat * SIZE_ALONE >= top.flat);
     for posterior in credible(posteriors).chain(by_size) {
         let id = id_of(library, posterior.effect);
