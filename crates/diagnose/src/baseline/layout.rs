@@ -56,59 +56,48 @@ impl NuisanceLayout {
         Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0, 0, 0])
     }
 
-    /// The same with what is uncertain at any time: chords, acceleration, and what is named.
-    pub(crate) fn of_design_with_baseline(baseline: &Self, uncertain: Uncertain) -> Self {
+    /// The same, or none where there is no baseline, with what is uncertain at any time: chords, acceleration, and what is named.
+    pub(crate) fn of_design(baseline: Option<&Self>, uncertain: Uncertain) -> Self {
+        let [remainder, contrasts, deck, standing_effects, drag] = match baseline {
+            Some(of) => [&of.remainder, &of.contrasts, &of.deck, &of.standing_effects, &of.drag]
+                .map(Range::len),
+            None => [0, 0, if uncertain.deck { DECK_TERMS } else { 0 }, 0, 0],
+        };
+        let [bleed, gauges] = [uncertain.bleed, uncertain.gauges].map(usize::from);
         Self::tiled([
-            baseline.remainder.len(),
-            baseline.contrasts.len(),
-            baseline.deck.len(),
-            baseline.standing_effects.len(),
-            baseline.drag.len(),
+            remainder,
+            contrasts,
+            deck,
+            standing_effects,
+            drag,
             CHORD_COLUMNS,
             1,
-            usize::from(uncertain.bleed),
-            usize::from(uncertain.gauges),
+            bleed,
+            gauges,
             uncertain.table_rank,
         ])
-    }
-
-    /// Without a baseline.
-    pub(crate) fn of_design(uncertain: Uncertain) -> Self {
-        let deck = if uncertain.deck { DECK_TERMS } else { 0 };
-        let [bleed, gauges] = [uncertain.bleed, uncertain.gauges].map(usize::from);
-        Self::tiled([0, 0, deck, 0, 0, CHORD_COLUMNS, 1, bleed, gauges, uncertain.table_rank])
     }
 
     /// Widths in the order of the fields.
     fn tiled(widths: [usize; 10]) -> Self {
         let mut end = 0;
-        let [
-            remainder,
-            contrasts,
-            deck,
-            standing_effects,
-            drag,
-            chords,
-            acceleration,
-            bleed,
-            gauges,
-            table,
-        ] = widths.map(|width| {
-            let range = end..end + width;
-            end = range.end;
-            range
-        });
+        let mut widths = widths.into_iter();
+        let mut next = || {
+            let start = end;
+            end += widths.next().unwrap_or(0);
+            start..end
+        };
         Self {
-            remainder,
-            contrasts,
-            deck,
-            standing_effects,
-            drag,
-            chords,
-            acceleration,
-            bleed,
-            gauges,
-            table,
+            remainder: next(),
+            contrasts: next(),
+            deck: next(),
+            standing_effects: next(),
+            drag: next(),
+            chords: next(),
+            acceleration: next(),
+            bleed: next(),
+            gauges: next(),
+            table: next(),
         }
     }
 
@@ -157,7 +146,7 @@ mod tests {
             assert_eq!(baseline.of_baseline_range(), 0..baseline.len());
             for (table_rank, any) in [(0, false), (285, true)] {
                 let uncertain = Uncertain { deck: false, bleed: any, gauges: any, table_rank };
-                let design = NuisanceLayout::of_design_with_baseline(&baseline, uncertain);
+                let design = NuisanceLayout::of_design(Some(&baseline), uncertain);
                 assert_tiled(&design);
                 // What a baseline's covariance is over has the same places in the design.
                 assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
@@ -168,7 +157,7 @@ mod tests {
         }
         for (deck, columns) in [(true, DECK_TERMS), (false, 0)] {
             let uncertain = Uncertain { deck, table_rank: 7, ..Uncertain::default() };
-            let design = NuisanceLayout::of_design(uncertain);
+            let design = NuisanceLayout::of_design(None, uncertain);
             assert_tiled(&design);
             assert_eq!(design.len(), columns + CHORD_COLUMNS + 1 + 7);
             assert_eq!(design.deck, 0..columns);

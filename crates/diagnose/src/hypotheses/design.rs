@@ -69,12 +69,8 @@ impl<'a> Design<'a> {
             gauges: data.flights.iter().any(|flight| flight.gauge.is_some()),
             table_rank: table.map_or(0, TableUncertainty::rank),
         };
-        let layout = match baseline {
-            Some(baseline) => {
-                NuisanceLayout::of_design_with_baseline(&baseline.layout(), uncertain)
-            }
-            None => NuisanceLayout::of_design(uncertain),
-        };
+        let layout = baseline.map(Baseline::layout);
+        let layout = NuisanceLayout::of_design(layout.as_ref(), uncertain);
         let nuisance = effects..effects + layout.len();
         let parts = Nuisance { layout, baseline, acceleration, table };
 

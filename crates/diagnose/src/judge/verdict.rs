@@ -244,16 +244,16 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
     }
 }
 
-/// What these flights cannot tell from a cause, and what their evidence leaves open all the same, however far away that is.
+/// What these flights cannot tell from a cause, and what their evidence leaves open all the same, however far away that is. What
+/// acts `together` with it is what it is, and no other name of it.
 fn class_and_credible(
     findings: &Findings<'_>,
     top: &Posterior,
     posteriors: &[&Posterior],
+    together: &[EffectId],
 ) -> [Vec<EffectId>; 2] {
     let &Findings { library, distances, .. } = findings;
     let class = class_of(distances, library, top);
-    // What acts with it is what it is, and no other name of it.
-    let together = set_of(findings.analysis, library, top);
     // What differs from it by less than laws may, and what only the prior sizes decide, is open as well.
     let alike = top
         .column_and_size()
@@ -275,10 +275,11 @@ fn class_and_credible(
 fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
     let &Findings { analysis, library, advisor, outside, posteriors, .. } = findings;
     let all: Vec<&Posterior> = posteriors.iter().collect();
-    let [mut class, credible] = class_and_credible(findings, top, &all);
+    let effects = set_of(analysis, library, top);
+    let [mut class, credible] = class_and_credible(findings, top, &all, &effects);
     class.extend(&credible);
     Found {
-        effects: set_of(analysis, library, top),
+        effects,
         probability: top.probability * (1.0 - outside.probability),
         beside: vec![],
         closure: closed_unseen(findings.unseen),
