@@ -5,6 +5,7 @@ use effects::{BetweenNodes, EffectReferences, Response, Variable};
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
+use crate::baseline::gauge_level::GaugeLevel;
 use crate::baseline::layout::NuisanceLayout;
 use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
@@ -18,6 +19,7 @@ use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::flown;
 use crate::thresholds::FARTHEST_PRODUCT;
 
+pub(crate) mod gauge_level;
 pub(crate) mod layout;
 pub(crate) mod smooth;
 pub(crate) mod standing_effects;
@@ -80,6 +82,9 @@ pub struct BaselineRecord {
     pub(crate) interval_factor: f64,
     /// Remaining rms of ln fuel flow over the flights that it was learnt from.
     pub(crate) rms: f64,
+    /// How tank gauges read; `None` where they are not recorded, and in files of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) gauges: Option<GaugeLevel>,
 }
 
 impl BaselineRecord {
@@ -192,6 +197,19 @@ impl Baseline {
     #[must_use]
     pub const fn remaining_rms(&self) -> f64 {
         self.parts.rms
+    }
+
+    /// What of it holds of another aircraft of the type: all but how its tank gauges read, which are another aircraft's own.
+    #[must_use]
+    pub fn of_another_aircraft(&self) -> Self {
+        let parts = BaselineRecord { gauges: None, ..self.parts.clone() };
+        Self { parts, ..self.clone() }
+    }
+
+    /// How tank gauges read against the flow meters in the flights that it was learnt from, where they are recorded.
+    #[must_use]
+    pub const fn gauges(&self) -> Option<&GaugeLevel> {
+        self.parts.gauges.as_ref()
     }
 
     /// What the drag table is between its nodes where this is added to it.

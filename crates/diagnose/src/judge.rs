@@ -7,6 +7,7 @@ pub(crate) mod detection;
 pub(crate) mod forms;
 pub(crate) mod gap;
 pub(crate) mod noise_floors;
+pub(crate) mod pair;
 pub(crate) mod posterior;
 pub(crate) mod size;
 pub(crate) mod sufficiency;

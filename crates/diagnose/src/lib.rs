@@ -130,6 +130,7 @@ mod oracles;
 pub use effects::{Form, Variable};
 
 pub use attainable::{KnownClutter, attainable};
+pub use baseline::gauge_level::GaugeLevel;
 pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;

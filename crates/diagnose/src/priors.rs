@@ -157,6 +157,12 @@ deciding_numbers! {
         GAUGE_DEVIATION_KG: f64 = 25.0, "kg",
             "standard deviation of the difference of two gauge readings",
             OurChoice "A fuel-quantity indication to about 1 % of a business jet's tanks.";
+        GAUGE_GAIN_DEVIATION: f64 = 0.01, "of the fuel burned",
+            "prior standard deviation of what gauges and meters of one aircraft differ by at all times",
+            OurChoice "Gauges and meters are each calibrated to about a per cent, or half of one.";
+        GAUGE_SCATTER_FREEDOM: f64 = 2.0, "",
+            "flights that the stated deviation of gauges counts as much as",
+            OurChoice "It is a guess for every size of tanks; a few flights know better.";
     }
     "What a baseline may be" {
         REMAINDER_LEVEL_DEVIATION: f64 = 0.10, "of fuel flow",

@@ -315,8 +315,8 @@ deciding_numbers! {
             "standard deviation of a mass that is weighed",
             OurChoice "What an operator may expect of scales; a guess, which the advice states.";
         MEASURED_BURN_PERCENT: f64 = 0.15, "%",
-            "standard deviation of fuel flow held against tank gauges, however many flights",
-            OurChoice "Over many flights the errors of the gauges average out but for their gain; a guess, which the advice states.";
+            "standard deviation of fuel flow held against fuel uplifted or against tank gauges whose gain is known, however many flights",
+            OurChoice "Over many flights errors average out but for what changes of a gain; a guess, which the advice states.";
         MEASURED_SAT_K: f64 = 0.5, "K",
             "standard deviation of SAT held against a reanalysis",
             OurChoice "A mean over many flights; a guess, which the advice states.";

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use diagnose::{Diagnosis, FlightRecord, GaugeBurn, Input, Options, Region, Verdict, diagnose};
+use diagnose::{
+    Baseline, Diagnosis, FlightRecord, GaugeBurn, Input, Options, Region, Verdict, diagnose,
+};
 use effects::ExtendedModel;
 use flight::Segment;
 use flight::effect::EffectId;
@@ -56,16 +58,20 @@ fn flights_with(engines: u32, more_percent: f64) -> Vec<Vec<Segment>> {
     flights
 }
 
+fn records(
+    flights: &[Vec<Segment>],
+    gauges: impl Fn(usize) -> Option<GaugeBurn>,
+) -> Vec<FlightRecord<'_>> {
+    let record = |(flight, segments)| FlightRecord { segments, gauges: gauges(flight) };
+    flights.iter().map(Vec::as_slice).enumerate().map(record).collect()
+}
+
 fn diagnosed(
     model: &ExtendedModel,
     flights: &[Vec<Segment>],
     gauges: impl Fn(usize) -> Option<GaugeBurn>,
 ) -> Diagnosis {
-    let records: Vec<FlightRecord<'_>> = flights
-        .iter()
-        .enumerate()
-        .map(|(flight, segments)| FlightRecord { segments, gauges: gauges(flight) })
-        .collect();
+    let records = records(flights, gauges);
     let input = Input::against(model, &records);
     diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
 }
@@ -93,33 +99,57 @@ fn one_engine_of_three_and_of_four() {
     }
 }
 
-/// Engines burn 2 % more, or meters read 2 % high: the same flights but for the tank gauges, which show what was burnt.
+/// Gauges read 1.5 % less than is burnt, at all times. Then engines burn 2 % more, or meters read 2 % high: the same flights but for
+/// what the gauges show.
 #[test]
 fn gauges_distinguish_meters_from_engines() {
     const METERED_KG: f64 = 4000.0;
-    let planted = Planted { id: EffectId::FuelFlowGain, size: 2.0 };
-    let flights = fly(503, &Setup::default(), &[planted], &Background::default()).flights;
-    let burn = |burnt_kg: f64| {
+    let gauged = |burnt_kg: f64| {
         move |flight: usize| {
             // Errors of half the gauges' standard deviation, up and down.
             let error_kg = if flight.is_multiple_of(2) { 8.0 } else { -8.0 };
             Some(GaugeBurn {
-                gauged_kg: burnt_kg + error_kg,
+                gauged_kg: 0.985 * burnt_kg + error_kg,
                 metered_kg: METERED_KG,
                 deviation_kg: 16.0,
             })
         }
     };
     let model = exact_model();
+    let clean = fly(504, &Setup::default(), &[], &Background::default()).flights;
+    let learn = |gauges: &dyn Fn(usize) -> Option<GaugeBurn>| {
+        let records = records(&clean, gauges);
+        Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap()
+    };
+    let planted = Planted { id: EffectId::FuelFlowGain, size: 2.0 };
+    let later = fly(503, &Setup::default(), &[planted], &Background::default()).flights;
+    let found = |taught: &Baseline, gauges: &dyn Fn(usize) -> Option<GaugeBurn>| {
+        let records = records(&later, gauges);
+        let options = Options { skip_closure: true, ..Options::default() };
+        let input = Input { baseline: Some(taught), ..Input::against(&model, &records) };
+        diagnose(&input, &options).unwrap()
+    };
     let probability = |found: &Diagnosis, effect: EffectId| {
         let cause = found.causes.iter().find(|cause| cause.effect == effect);
         cause.map_or(0.0, |cause| cause.probability)
     };
-    let meters = diagnosed(&model, &flights, burn(METERED_KG / 1.02));
+    let taught = learn(&gauged(METERED_KG));
+    let level = taught.gauges().unwrap();
+    assert!((level.mean - 0.985_f64.ln()).abs() < 2.0 * level.deviation, "{level:?}");
+    let meters = found(&taught, &gauged(METERED_KG / 1.02));
     assert_eq!(meters.causes[0].effect, EffectId::FuelFlowGain, "{:?}", meters.verdict);
     assert!(probability(&meters, EffectId::FuelFlowGain) > 0.9, "{:?}", meters.causes);
     let [low, high] = meters.causes[0].magnitude.ci95;
     assert!(low < 2.0 && 2.0 < high, "{:?}", meters.causes[0]);
-    let engines = diagnosed(&model, &flights, burn(METERED_KG));
+    let engines = found(&taught, &gauged(METERED_KG));
     assert!(probability(&engines, EffectId::FuelFlowGain) < 0.02, "{:?}", engines.causes);
+    // Nobody knows how the gauges read before, and they may be off by as much: they move the odds by less than five.
+    let odds = |found: &Diagnosis| {
+        probability(found, EffectId::FuelFlowGain) / probability(found, EffectId::TsfcFactor)
+    };
+    let untaught = learn(&|_| None);
+    let without = found(&untaught, &|_| None);
+    let unknown = found(&untaught, &gauged(METERED_KG));
+    let moved = odds(&unknown) / odds(&without);
+    assert!((0.2..5.0).contains(&moved), "{moved}: {:?} {:?}", without.causes, unknown.causes);
 }

@@ -103,11 +103,11 @@ pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> 
 /// Force along the path beyond drag: inertia, and the climb along a sloping pressure surface.
 ///
 /// ```text
-/// m·V̇G + θ·m·f·V_cross,  f = 2Ω sin φ,  V_cross = −V·sin(drift)                  [diagnosis.7]
+/// m·V̇G + θ·m·f·V_cross,  f = 2Ω sin φ,  V_cross = −GS·sin(drift)                 [diagnosis.7]
 /// ```
 ///
-/// `V_cross` is positive when the wind blows to the left of the track: in the northern hemisphere high pressure is then
-/// ahead and a surface of constant pressure climbs. In geostrophic flow the Coriolis force on the cross-wind balances
+/// `V_cross` is the wind from the right across the nose, positive when it blows to the left: in the northern hemisphere high
+/// pressure is then ahead and a surface of constant pressure climbs. The ground speed has no other component across the nose. In geostrophic flow the Coriolis force on the cross-wind balances
 /// this exactly.
 pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<'_>) -> f64 {
     let mut force_n = flown.mass_kg * point.acceleration_m_s2;
@@ -116,7 +116,7 @@ pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<
         && let (Some(latitude_deg), Some(drift_deg)) = (point.latitude_deg, point.drift_deg)
     {
         let coriolis = gravity::coriolis_parameter(Angle::degrees(latitude_deg));
-        let cross_m_s = -flown.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin();
+        let cross_m_s = -point.ground_speed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin();
         force_n += isobaric_slope * flown.mass_kg * coriolis * cross_m_s;
     }
     force_n

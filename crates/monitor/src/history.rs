@@ -14,6 +14,10 @@ mod dated;
 
 use dated::{changes, nearest};
 
+/// How often changes are looked for beside what conditions change. Our choice: where one is found, what conditions change is found
+/// anew beside it, and may show another one.
+const MOST_ROUNDS: usize = 4;
+
 /// A change that the flights show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
@@ -70,6 +74,8 @@ pub struct History {
     pub levels: Levels,
     /// Of every event, in the order given.
     pub events: Vec<EventEffect>,
+    /// The flights at the series' mean conditions; as they were where conditions are not known.
+    pub at_mean_conditions: Series,
 }
 
 impl History {
@@ -106,22 +112,28 @@ impl History {
                 is_likely: *bearing == Bearing::Likely,
             })
             .collect();
-        let flights: Vec<usize> = candidates.iter().map(|candidate| candidate.flight).collect();
-        let asked = Asked::new(series, &weights, &flights, *beliefs);
-        let mut changes = asked.changes();
-        for change in &mut changes {
-            belong(change, &candidates);
+        let recorded: Vec<usize> =
+            at_flight.iter().copied().filter(|flight| (1..series.len()).contains(flight)).collect();
+        let mut boundaries = Vec::new();
+        let (mut changes, mut levels);
+        let mut round = 0;
+        loop {
+            round += 1;
+            let all = merged(&boundaries, &recorded);
+            let shown = Levels::fit(series, &weights, &all, beliefs)?.at_mean_conditions(series);
+            changes = found(&shown, &weights, &candidates, beliefs);
+            levels = levels_between(&mut changes, series, &weights, beliefs)?;
+            let next: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
+            let is_settled = next == boundaries;
+            boundaries = next;
+            if is_settled || series.conditions().is_empty() || round == MOST_ROUNDS {
+                break;
+            }
         }
-        changes.dedup_by_key(|change| change.first_flight);
-        let levels = levels_between(&mut changes, series, &weights, beliefs)?;
-        let boundaries: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
-        let mut all = boundaries;
-        all.extend(at_flight.iter().copied().filter(|flight| (1..series.len()).contains(flight)));
-        all.sort_unstable();
-        all.dedup();
-        let measured = Levels::fit(series, &weights, &all, beliefs)?;
+        let measured = Levels::fit(series, &weights, &merged(&boundaries, &recorded), beliefs)?;
         let events = (0..events.len()).map(|event| effect(event, &at_flight, &measured)).collect();
-        Some(Self { noise, weights, changes, levels, events })
+        let at_mean_conditions = levels.at_mean_conditions(series);
+        Some(Self { noise, weights, changes, levels, events, at_mean_conditions })
     }
 
     /// [`weighted_mean_percent`] of flights with the weights of this history.
@@ -149,6 +161,30 @@ pub fn weighted_mean_percent(
     let weight: f64 = weights.iter().sum();
     let sum: f64 = of.iter().zip(weights).map(|(f, w)| f.deviation_percent() * w).sum();
     (weight > 0.0).then(|| Estimate { value: sum / weight, deviation: weight.powf(-0.5) })
+}
+
+/// Changes that a series shows, each with the event that it belongs to.
+fn found(
+    shown: &Series,
+    weights: &[f64],
+    candidates: &[Candidate],
+    beliefs: &ChangeBeliefs,
+) -> Vec<Change> {
+    let flights: Vec<usize> = candidates.iter().map(|candidate| candidate.flight).collect();
+    let mut changes = Asked::new(shown, weights, &flights, *beliefs).changes();
+    for change in &mut changes {
+        belong(change, candidates);
+    }
+    changes.dedup_by_key(|change| change.first_flight);
+    changes
+}
+
+/// Both together in order, each once.
+fn merged(some: &[usize], others: &[usize]) -> Vec<usize> {
+    let mut all = [some, others].concat();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// Levels between changes, of which those go, one after the other, whose step may be none: its 95 % interval holds zero.

@@ -1,7 +1,8 @@
-//! The level of a tail over time: one trend, and a step at each boundary between pieces.
+//! The level of a tail over time: one trend, and a step at each boundary between pieces; beside them what depends on conditions.
 
-use crate::piece::{Piece, RunningSums};
-use crate::series::Series;
+use nalgebra::{SMatrix, SVector};
+
+use crate::series::{CONDITIONS, Series};
 use crate::settings::ChangeBeliefs;
 
 /// A value and its standard deviation.
@@ -31,27 +32,41 @@ impl Estimate {
 /// text books have it, so that intervals can be checked by hand.
 pub const NORMAL_95: f64 = 1.96;
 
-/// A trend common to all pieces and the level of each.
+/// Columns of the regression besides the pieces: years, and conditions.
+const COLUMNS: usize = 1 + CONDITIONS;
+type Row = SVector<f64, COLUMNS>;
+
+/// A trend common to all pieces, what conditions change, and the level of each piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Levels {
     boundaries: Vec<usize>,
-    pieces: Vec<Piece>,
-    slope: f64,
-    slope_precision: f64,
+    pieces: Vec<PieceMeans>,
+    /// Trend, % a year, and what a standard deviation of each condition changes, %.
+    coefficients: Row,
+    covariance: SMatrix<f64, COLUMNS, COLUMNS>,
     flights: usize,
 }
 
+/// Weighted means of a piece.
+#[derive(Clone, Debug, PartialEq)]
+struct PieceMeans {
+    weight: f64,
+    mean_x: Row,
+    mean_y: f64,
+}
+
 impl Levels {
-    /// Weighted least squares of deviations on one slope and the level of each piece; the slope is believed to be normal
-    /// about 0 beforehand, which only matters where the flights span too few months to show it.
+    /// Weighted least squares of deviations on one slope, the conditions of the flights and the level of each piece; slope and
+    /// conditions are believed to be normal about 0 beforehand, which only matters where the flights do not show them.
     ///
     /// ```text
-    /// b = Σ Sxy/(Σ Sxx + 1/o²),  level at x = ȳ + b(x − x̄)  of the piece                      [monitoring.9]
-    /// step = ȳ₂ − ȳ₁ − b(x̄₂ − x̄₁),  variance 1/W₁ + 1/W₂ + (x̄₂ − x̄₁)²/(Σ Sxx + 1/o²)       [monitoring.10]
+    /// b = (Σ Sxx + Λ)⁻¹ Σ Sxy,  level at x = ȳ + b·(x − x̄)  of the piece                        [monitoring.9]
+    /// step = ȳ₂ − ȳ₁ − b·(x̄₂ − x̄₁),  variance 1/W₁ + 1/W₂ + (x̄₂ − x̄₁)ᵀ(Σ Sxx + Λ)⁻¹(x̄₂ − x̄₁)  [monitoring.10]
     /// ```
     ///
-    /// `boundaries` are first flights of pieces, in order, each once, from the second piece on; others are left out.
-    /// `None` for a series without a flight.
+    /// x are years and the flight's conditions in standard deviations, S sums of squares and products about the means of a
+    /// piece, Λ one over the prior variances. `boundaries` are first flights of pieces, in order, each once, from the second
+    /// piece on; others are left out. `None` for a series without a flight.
     #[must_use]
     pub fn fit(
         series: &Series,
@@ -63,10 +78,6 @@ impl Levels {
         if flights == 0 {
             return None;
         }
-        let mut sums = RunningSums::new();
-        for (flight, weight) in series.flights().iter().zip(weights) {
-            sums.push(series.years(flight.time()), flight.deviation_percent(), *weight);
-        }
         let mut kept: Vec<usize> = Vec::with_capacity(boundaries.len());
         for &boundary in boundaries {
             if boundary > kept.last().copied().unwrap_or(0) && boundary < flights {
@@ -75,11 +86,32 @@ impl Levels {
         }
         let starts = core::iter::once(0).chain(kept.iter().copied());
         let ends = kept.iter().copied().chain(core::iter::once(flights));
-        let pieces: Vec<Piece> = starts.zip(ends).map(|(from, to)| sums.piece(from, to)).collect();
-        let slope_precision = pieces.iter().map(|piece| piece.sxx).sum::<f64>()
-            + beliefs.slope_deviation_percent_per_year.powi(-2);
-        let slope = pieces.iter().map(|piece| piece.sxy).sum::<f64>() / slope_precision;
-        Some(Self { boundaries: kept, pieces, slope, slope_precision, flights })
+        let rows: Vec<(Row, f64, f64)> = (0..flights)
+            .map(|k| (row(series, k), series.flights()[k].deviation_percent(), weights[k]))
+            .collect();
+        let mut information = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
+        information.fill_diagonal(beliefs.condition_deviation_percent.powi(-2));
+        information[(0, 0)] = beliefs.slope_deviation_percent_per_year.powi(-2);
+        let mut right = Row::zeros();
+        let mut pieces = Vec::with_capacity(kept.len() + 1);
+        for (from, to) in starts.zip(ends) {
+            let piece = PieceMeans::of(&rows[from..to]);
+            for (x, y, weight) in &rows[from..to] {
+                let apart = x - piece.mean_x;
+                information += *weight * apart * apart.transpose();
+                right += *weight * (y - piece.mean_y) * apart;
+            }
+            pieces.push(piece);
+        }
+        let covariance = information.cholesky()?.inverse();
+        let coefficients = covariance * right;
+        Some(Self { boundaries: kept, pieces, coefficients, covariance, flights })
+    }
+
+    /// What a standard deviation of each condition changes of a deviation, %: nothing where conditions are not known.
+    #[must_use]
+    pub fn by_condition_percent(&self) -> [f64; CONDITIONS] {
+        core::array::from_fn(|k| self.coefficients[1 + k])
     }
 
     /// Boundaries of pieces: first flights from the second piece on.
@@ -91,7 +123,7 @@ impl Levels {
     /// The trend between changes, % a year.
     #[must_use]
     pub fn trend_percent_per_year(&self) -> Estimate {
-        Estimate { value: self.slope, deviation: self.slope_precision.powf(-0.5) }
+        Estimate { value: self.coefficients[0], deviation: self.covariance[(0, 0)].sqrt() }
     }
 
     /// The step at a boundary, by its place among the boundaries, %.
@@ -99,23 +131,33 @@ impl Levels {
     pub fn step_percent(&self, place: usize) -> Option<Estimate> {
         let (before, after) = (self.pieces.get(place)?, self.pieces.get(place + 1)?);
         let apart = after.mean_x - before.mean_x;
-        let variance =
-            1.0 / before.weight + 1.0 / after.weight + apart * apart / self.slope_precision;
+        let variance = 1.0 / before.weight + 1.0 / after.weight + self.variance_along(&apart);
         Some(Estimate {
-            value: after.mean_y - before.mean_y - self.slope * apart,
+            value: after.mean_y - before.mean_y - self.coefficients.dot(&apart),
             deviation: variance.sqrt(),
         })
     }
 
-    /// The level of the piece that a flight belongs to, at a date, %.
+    /// The level of the piece that a flight belongs to, at a date and mean conditions, %.
     #[must_use]
     pub fn level_percent(&self, flight: usize, years: f64) -> Estimate {
         let piece = &self.pieces[self.boundaries.partition_point(|start| *start <= flight)];
-        let apart = years - piece.mean_x;
+        let mut x = Row::zeros();
+        x[0] = years;
+        let apart = x - piece.mean_x;
         Estimate {
-            value: piece.mean_y + self.slope * apart,
-            deviation: (1.0 / piece.weight + apart * apart / self.slope_precision).sqrt(),
+            value: piece.mean_y + self.coefficients.dot(&apart),
+            deviation: (1.0 / piece.weight + self.variance_along(&apart)).sqrt(),
         }
+    }
+
+    /// The flights of a series at its mean conditions.
+    pub(crate) fn at_mean_conditions(&self, series: &Series) -> Series {
+        series.at_mean_conditions(&self.by_condition_percent())
+    }
+
+    fn variance_along(&self, apart: &Row) -> f64 {
+        (apart.transpose() * self.covariance * apart)[0].max(0.0)
     }
 
     /// The level at the last flight's date, %.
@@ -126,6 +168,22 @@ impl Levels {
     }
 }
 
+impl PieceMeans {
+    /// Of rows of x, y and weight; at least one.
+    fn of(rows: &[(Row, f64, f64)]) -> Self {
+        let weight: f64 = rows.iter().map(|(_, _, weight)| weight).sum();
+        let mean_x = rows.iter().map(|(x, _, weight)| *weight * x).sum::<Row>() / weight;
+        let mean_y = rows.iter().map(|(_, y, weight)| weight * y).sum::<f64>() / weight;
+        Self { weight, mean_x, mean_y }
+    }
+}
+
+fn row(series: &Series, flight: usize) -> Row {
+    let years = series.years(series.flights()[flight].time());
+    let conditions = series.conditions().get(flight).copied().unwrap_or_default();
+    Row::from_fn(|k, _| if k == 0 { years } else { conditions[k - 1] })
+}
+
 #[cfg(test)]
 mod tests {
     use flight::Timestamp;
@@ -134,7 +192,7 @@ mod tests {
     use super::*;
     use crate::series::FlightDeviation;
 
-    /// Oracle: the same regression with dense matrices, columns slope and one level per piece.
+    /// Oracle: the same regression with dense matrices, columns slope, conditions and one level per piece.
     #[test]
     fn slope_steps_and_levels_are_those_of_dense_least_squares() {
         let days = [0, 3, 9, 20, 31, 60, 61, 80, 120, 200, 230, 365];
@@ -144,23 +202,45 @@ mod tests {
             let time = Timestamp::from_second(86_400 * day).unwrap();
             FlightDeviation::of_segments(time, &[y]).unwrap()
         });
-        let series = Series::new(flights.collect()).unwrap();
+        let without = Series::new(flights.collect()).unwrap();
+        // The third does not vary.
+        let conditions: [[f64; CONDITIONS]; 12] = core::array::from_fn(|k| {
+            let number = |seed: usize| ((k * 7 + seed * 5) % 11) as f64;
+            [200.0 + number(1), 0.01 * number(2), 5.0, 1e4 * number(3), number(4)]
+        });
+        let with = without.clone().under(&conditions).unwrap();
+        for series in [without, with] {
+            checked_by_dense_least_squares(&series, &days, &y, &weights);
+        }
+    }
+
+    fn checked_by_dense_least_squares(
+        series: &Series,
+        days: &[i64; 12],
+        y: &[f64; 12],
+        weights: &[f64; 12],
+    ) {
+        const WIDTH: usize = 4 + CONDITIONS;
         let beliefs = ChangeBeliefs::of_2026();
-        let levels = Levels::fit(&series, &weights, &[4, 9], &beliefs).unwrap();
+        let levels = Levels::fit(series, weights, &[4, 9], &beliefs).unwrap();
 
         let years = |k: usize| days[k] as f64 / 365.25;
         let piece = |k: usize| usize::from(k >= 4) + usize::from(k >= 9);
-        let design = DMatrix::from_fn(12, 4, |row, column| match column {
+        let design = DMatrix::from_fn(12, WIDTH, |row, column| match column {
             0 => years(row),
-            column => f64::from(u8::from(piece(row) + 1 == column)),
+            1..4 => f64::from(u8::from(piece(row) + 1 == column)),
+            _ => series.conditions().get(row).map_or(0.0, |conditions| conditions[column - 4]),
         });
-        let weight = DMatrix::from_diagonal(&DVector::from_row_slice(&weights));
+        let weight = DMatrix::from_diagonal(&DVector::from_row_slice(weights));
         let mut normal = design.transpose() * &weight * &design;
         normal[(0, 0)] += beliefs.slope_deviation_percent_per_year.powi(-2);
+        for column in 4..WIDTH {
+            normal[(column, column)] += beliefs.condition_deviation_percent.powi(-2);
+        }
         let covariance = normal.clone().try_inverse().unwrap();
-        let found = &covariance * design.transpose() * &weight * DVector::from_row_slice(&y);
+        let found = &covariance * design.transpose() * &weight * DVector::from_row_slice(y);
         let check = |estimate: Estimate, by: [f64; 4]| {
-            let by = DVector::from_row_slice(&by);
+            let by = DVector::from_fn(WIDTH, |k, _| by.get(k).copied().unwrap_or(0.0));
             let variance = (by.transpose() * &covariance * &by)[(0, 0)];
             assert!((estimate.value - by.dot(&found)).abs() < 1e-10, "{estimate:?}");
             assert!((estimate.deviation - variance.sqrt()).abs() < 1e-10, "{estimate:?}");
@@ -169,7 +249,10 @@ mod tests {
         check(levels.step_percent(0).unwrap(), [0.0, -1.0, 1.0, 0.0]);
         check(levels.step_percent(1).unwrap(), [0.0, 0.0, -1.0, 1.0]);
         check(levels.level_percent(5, 0.3), [0.3, 0.0, 1.0, 0.0]);
-        check(levels.last_level_percent(&series), [365.0 / 365.25, 0.0, 0.0, 1.0]);
+        check(levels.last_level_percent(series), [365.0 / 365.25, 0.0, 0.0, 1.0]);
         assert!(levels.step_percent(2).is_none());
+        for (k, by) in levels.by_condition_percent().iter().enumerate() {
+            assert!((by - found[4 + k]).abs() < 1e-10, "{by}");
+        }
     }
 }

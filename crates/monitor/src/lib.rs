@@ -57,5 +57,5 @@ pub use history::{Bearing, Change, EventEffect, History, weighted_mean_percent};
 pub use levels::{Estimate, Levels, NORMAL_95};
 pub use months::{Month, months};
 pub use noise::Noise;
-pub use series::{FlightDeviation, Series, SeriesError, years_between};
+pub use series::{CONDITIONS, FlightDeviation, Series, SeriesError, years_between};
 pub use settings::ChangeBeliefs;

@@ -8,6 +8,9 @@ use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 /// A Julian year, by which trends are per year.
 const SECONDS_A_YEAR: f64 = DAYS_PER_YEAR * SECONDS_PER_DAY;
 
+/// Standard deviation over the mean below which a condition does not vary. Our choice: rounding.
+const LEAST_VARIATION: f64 = 1e-9;
+
 /// What one flight shows: the mean of its segments' deviations, and how much they scatter.
 ///
 /// A deviation is 100·ln(recorded/predicted) fuel flow, %: positive, the aircraft burns more than predicted.
@@ -18,6 +21,9 @@ pub struct FlightDeviation {
     segments: NonZeroU32,
     scatter_percent2: f64,
 }
+
+/// How many conditions a flight is flown at that its deviation may depend on.
+pub const CONDITIONS: usize = 5;
 
 /// Why flights are not a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -30,6 +36,20 @@ pub enum SeriesError {
         index: usize,
         /// When it began.
         time: Timestamp,
+    },
+    /// Conditions are not those of the flights.
+    #[error("conditions of {found} flights, expected {expected}")]
+    Conditions {
+        /// Conditions given.
+        found: usize,
+        /// Flights of the series.
+        expected: usize,
+    },
+    /// A condition is no number.
+    #[error("the conditions of flight {index} are not finite")]
+    NotFinite {
+        /// Its place, from 0.
+        index: usize,
     },
 }
 
@@ -98,6 +118,8 @@ impl FlightDeviation {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
     flights: Vec<FlightDeviation>,
+    /// Of every flight, in standard deviations from their mean over the flights; empty where they are not known.
+    conditions: Vec<[f64; CONDITIONS]>,
 }
 
 impl Series {
@@ -111,8 +133,43 @@ impl Series {
             Some(before) => {
                 Err(SeriesError::Order { index: before + 1, time: flights[before + 1].time })
             }
-            None => Ok(Self { flights }),
+            None => Ok(Self { flights, conditions: Vec::new() }),
         }
+    }
+
+    /// The same where the conditions of every flight are known, in any units. The model that its deviations are against has learnt
+    /// how fuel flow depends on them, and may have taken for that what is a change over time.
+    ///
+    /// # Errors
+    /// [`SeriesError`] where there are not as many as flights, or one is not finite.
+    pub fn under(mut self, conditions: &[[f64; CONDITIONS]]) -> Result<Self, SeriesError> {
+        let (found, expected) = (conditions.len(), self.flights.len());
+        if found != expected {
+            return Err(SeriesError::Conditions { found, expected });
+        }
+        let is_finite = |of: &[f64; CONDITIONS]| of.iter().all(|value| value.is_finite());
+        if let Some(index) = conditions.iter().position(|of| !is_finite(of)) {
+            return Err(SeriesError::NotFinite { index });
+        }
+        self.conditions = standardised(conditions);
+        Ok(self)
+    }
+
+    /// Of every flight, in standard deviations from their mean; empty where they are not known.
+    #[must_use]
+    pub fn conditions(&self) -> &[[f64; CONDITIONS]] {
+        &self.conditions
+    }
+
+    /// What the flights would have shown at mean conditions, where a standard deviation of each changes a deviation by so much, %.
+    #[must_use]
+    pub(crate) fn at_mean_conditions(&self, percent: &[f64; CONDITIONS]) -> Self {
+        let mut flights = self.flights.clone();
+        for (flight, conditions) in flights.iter_mut().zip(&self.conditions) {
+            let by: f64 = conditions.iter().zip(percent).map(|(value, by)| value * by).sum();
+            *flight = flight.raised(-by);
+        }
+        Self { flights, conditions: Vec::new() }
     }
 
     /// The flights.
@@ -144,6 +201,22 @@ impl Series {
     pub fn first_from(&self, time: Timestamp) -> usize {
         self.flights.partition_point(|flight| flight.time < time)
     }
+}
+
+/// Each condition less its mean over its standard deviation; nothing of one that does not vary.
+fn standardised(conditions: &[[f64; CONDITIONS]]) -> Vec<[f64; CONDITIONS]> {
+    let count = conditions.len().max(1) as f64;
+    let mut standard = conditions.to_vec();
+    for k in 0..CONDITIONS {
+        let mean = conditions.iter().map(|of| of[k]).sum::<f64>() / count;
+        let square = conditions.iter().map(|of| (of[k] - mean).powi(2)).sum::<f64>() / count;
+        let varies = square > (LEAST_VARIATION * mean).powi(2);
+        let scale = if varies { square.powf(-0.5) } else { 0.0 };
+        for of in &mut standard {
+            of[k] = scale * (of[k] - mean);
+        }
+    }
+    standard
 }
 
 /// Years from one instant to another.

@@ -14,6 +14,9 @@ pub struct ChangeBeliefs {
     pub slope_deviation_percent_per_year: f64,
     /// The same of a tail that hardly ages: between two changes, one is as likely as the other.
     pub small_slope_deviation_percent_per_year: f64,
+    /// Standard deviation of what one of a condition (temperature, level, mass) changes a deviation by, %, because the learnt model
+    /// took a change over time for it: a third of a typical step.
+    pub condition_deviation_percent: f64,
     /// How often something changes that nobody recorded (engine, box, probe, load sheet), a year: however many flights there
     /// are, aircraft change with time.
     pub changes_per_year: f64,
@@ -34,6 +37,7 @@ impl ChangeBeliefs {
             level_deviation_percent: 1.5,
             slope_deviation_percent_per_year: 1.5,
             small_slope_deviation_percent_per_year: 0.3,
+            condition_deviation_percent: 0.5,
             changes_per_year: 1.0,
             change_at_event: 0.5,
             change_at_most: 0.5,
@@ -102,11 +106,21 @@ pub const CORRELATION_ERROR: f64 = 1.46;
 /// Standard errors below which a correlation is not believed: beyond the 95 % interval of none.
 pub const CORRELATION_SEEN: f64 = 2.0;
 
-/// Standard deviations beyond which a difference counts as no larger in the robust scale (Huber 1964, proposal 2, with
-/// 2.5).
-pub const HUBER_LIMIT: f64 = 2.5;
-/// E min(z², 2.5²) of a standard normal z: 2Φ(c) − 1 − 2cφ(c) + 2c²(1 − Φ(c)) at c = 2.5.
-pub const HUBER_CONSISTENCY: f64 = 0.977_559_983;
+/// Huber's robust scale (1964, proposal 2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobustScale {
+    /// Standard deviations beyond which a difference counts as no larger.
+    pub limit: f64,
+    /// E min(z², c²) of a standard normal z: 2Φ(c) − 1 − 2cφ(c) + 2c²(1 − Φ(c)) at the limit c.
+    pub consistency: f64,
+}
+
+/// Of how much flights scatter. It has an end as long as fewer than a third of the differences, and so a sixth of the flights, are
+/// odd ones (consistency/limit²); of limit 2.5, a thirteenth of the flights, which load sheets may be.
+pub const SCALE_OF_SCATTER: RobustScale = RobustScale { limit: 1.5, consistency: 0.778_465_216 };
+/// Of scales whose ratio is the correlation: it varies less from series to series.
+pub const SCALE_OF_CORRELATION: RobustScale =
+    RobustScale { limit: 2.5, consistency: 0.977_559_983 };
 
 /// Flights on either side of a flight whose median it is compared with when outliers are weighed.
 pub const MEDIAN_REACH: usize = 5;

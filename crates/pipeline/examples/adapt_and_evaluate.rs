@@ -43,6 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             samples: flight.samples as u64,
             segments: 0,
             outside_table: 0,
+            gauges: flight.gauges,
         };
         learn_flight(
             &model.initial,

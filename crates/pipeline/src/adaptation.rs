@@ -107,9 +107,11 @@ pub fn learn(
     stored: Option<StoredTail>,
     remainder: RemainderChoice,
 ) -> Result<Learning, LearningError> {
-    let late = sorting.late
-        && learns_in_any_order(start)
-        && stored.as_ref().is_some_and(StoredTail::has_all_segments);
+    let learns_again = |stored: &StoredTail| {
+        let new = sorting.new.iter().map(|(flight, _)| flight);
+        (sorting.late || dates::change_with(&stored.model, new)) && stored.has_all_segments()
+    };
+    let late = learns_in_any_order(start) && stored.as_ref().is_some_and(learns_again);
     let mut work = Work { notes: sorting.warnings, refused: sorting.refused, flights_new: 0 };
     let learnt = if sorting.new.is_empty() {
         None

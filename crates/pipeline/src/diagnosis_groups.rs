@@ -1,8 +1,11 @@
 //! Which flights are diagnosed together and against which model, and their diagnosis.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnose::{DiagnoseError, FlightRecord, Input, Options, TableUncertaintyError, diagnose};
+use diagnose::{
+    Baseline, DiagnoseError, FlightRecord, Input, Options, TableUncertaintyError, diagnose,
+};
 use flight::effect::EffectId;
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
@@ -131,7 +134,8 @@ impl Group<'_> {
         let predicts = Predicts::table_only(asked.table_only);
         let table = table_uncertainty::of_model(self.model, predicts, &records)
             .map_err(|error| wrong(error.into()))?;
-        let baseline = self.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
+        let baseline = self.baseline();
+        let baseline = baseline.as_deref();
         let events_s = self.events_s(&asked.events);
         let input = Input {
             model: &self.model.initial,
@@ -156,6 +160,17 @@ impl Group<'_> {
             run_notes: self.run_notes(asked),
         };
         Ok((diagnosed, figures))
+    }
+
+    /// What the model remembers of clean flights; of another aircraft's, what holds of this one.
+    pub(crate) fn baseline(&self) -> Option<Cow<'_, Baseline>> {
+        let learnt = self.model.learnt.as_ref()?;
+        let baseline = learnt.baseline.as_ref()?;
+        Some(if learnt.tail == self.name {
+            Cow::Borrowed(baseline)
+        } else {
+            Cow::Owned(baseline.of_another_aircraft())
+        })
     }
 
     /// Flights with segments, as a diagnosis takes them.

@@ -80,6 +80,17 @@ fn found_words(diagnosis: &Diagnosis, found: &Found) -> String {
         }
         _ => format!("One of {}: {}.", joined(&found.class, ", "), undecided(found)),
     };
+    for beside in &found.beside {
+        let others = others_beside(found, beside.effect);
+        if !others.is_empty() {
+            let _ = write!(
+                words,
+                " In place of {} it may be {}: these flights cannot tell.",
+                beside.effect,
+                joined(&others, " or ")
+            );
+        }
+    }
     if stands_out(found.probability)
         && let Some(follows) = follows(found)
     {
@@ -123,6 +134,12 @@ pub(crate) fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().collect::<String>() + letters.as_str()
     })
+}
+
+/// What an effect that acts together with the leading one may be instead.
+pub fn others_beside(found: &Found, id: EffectId) -> Vec<EffectId> {
+    let of = found.beside.iter().filter(|beside| beside.effect == id);
+    of.flat_map(|beside| &beside.class).copied().filter(|other| *other != id).collect()
 }
 
 /// A guide whose drag is off: adapting comes first.
@@ -229,7 +246,10 @@ pub fn distances_words(separation: &Separation) -> String {
 pub fn measurement_words(measurement: &Measurement) -> String {
     match measurement {
         Measurement::Weighing => "weigh the aircraft (to 0.3 % of its mass)".to_owned(),
-        Measurement::TankGauges => "compare with tank gauges (to 0.15 %)".to_owned(),
+        Measurement::TankGauges => {
+            "compare with the fuel uplifted, or with tank gauges held against it (to 0.15 %)"
+                .to_owned()
+        }
         Measurement::TemperatureReanalysis => "compare SAT with a reanalysis (to 0.5 K)".to_owned(),
         Measurement::AirspeedByGps => {
             "compare true airspeed with GPS and wind (to Mach 0.0015)".to_owned()

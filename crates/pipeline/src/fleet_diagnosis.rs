@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use diagnose::{
-    FleetDiagnosis, FleetFinding, FleetFrame, FleetLevel, FleetTail, FlightRecord, Input, ModelOf,
-    Options, diagnose_fleet,
+    Baseline, FleetDiagnosis, FleetFinding, FleetFrame, FleetLevel, FleetTail, FlightRecord, Input,
+    ModelOf, Options, diagnose_fleet,
 };
 use flight::effect::EffectId;
 
@@ -19,7 +19,7 @@ mod document;
 mod tables;
 mod text;
 
-pub use document::{FleetEffectRecord, FleetFindingRecord, FleetRecord, FleetTailRecord};
+pub use document::{FleetEffectRecord, FleetFindingRecord, FleetGap, FleetRecord, FleetTailRecord};
 pub use tables::fleet_table;
 pub use text::{TEACH_IT_FIRST, fleet_text, nothing_shared, of_tail_words, size_words};
 
@@ -148,7 +148,12 @@ impl Group<'_> {
     ) -> Result<R, GroupErrorReason> {
         let predicts = Predicts::table_only(asked.table_only);
         let table = table_uncertainty::of_model(self.model, predicts, records)?;
-        let baseline = self.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
+        let own = self.baseline();
+        let of_type = match model_of {
+            ModelOf::Type => own.as_deref().map(Baseline::of_another_aircraft),
+            ModelOf::Tail => None,
+        };
+        let baseline = of_type.as_ref().or(own.as_deref());
         let input = Input {
             model: &self.model.initial,
             drag_table: self.model.reference_table(predicts),
@@ -167,6 +172,13 @@ impl DiagnosedFleet {
     /// Whose a finding is: the tail's name, or the type.
     pub fn whose(&self, finding: &FleetFinding) -> &str {
         finding.tail.map_or(&self.aircraft_type, |tail| &self.tails[tail].tail)
+    }
+
+    /// Mean gap of the tails; `None` of one.
+    pub fn mean_gap(&self) -> Option<FleetGap> {
+        let gaps: Vec<f64> =
+            self.tails.iter().map(|member| member.reduced.mean_gap_percent).collect();
+        FleetGap::of_tails(&gaps)
     }
 
     /// Effects that were found anywhere, in the library's order: their places in the diagnosis.

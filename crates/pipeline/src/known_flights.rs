@@ -186,6 +186,7 @@ pub fn entry_of(flight: &FlightRead) -> LedgerEntry {
         samples: flight.reduced.samples as u64,
         segments: 0,
         outside_table: 0,
+        gauges: flight.reduced.gauges,
     }
 }
 

@@ -4,12 +4,13 @@ mod again;
 mod curve;
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
-use diagnose::{Baseline, FlightRecord, visited_nodes};
+use diagnose::{Baseline, FlightRecord, GaugeBurn, visited_nodes};
 use effects::ExtendedModel;
-use flight::{Observation, Segment};
+use flight::{FlightIdentity, Observation, Segment};
 use refit::RefitRule;
 
 use crate::condition_means::{ConditionMeans, Conditions};
@@ -191,9 +192,10 @@ pub fn remember_remainder(
     segments: &[Segment],
 ) -> Option<LnFuelFlows> {
     let LawState::Bayes { state, .. } = &learnt.law else { return None };
+    let gauges = GaugesOf::ledger(&learnt.ledger);
     let flights: Vec<FlightRecord<'_>> = segments
         .chunk_by(|one, other| one.identity == other.identity)
-        .map(|segments| FlightRecord { segments, gauges: None })
+        .map(|segments| FlightRecord { segments, gauges: gauges.of(&segments[0].identity) })
         .collect();
     let (baseline, predicted) = baseline_of(initial, *state.settings(), &flights)
         .inspect(|(baseline, _)| tell_of_physics(&learnt.tail, baseline))
@@ -204,6 +206,25 @@ pub fn remember_remainder(
         .unzip();
     learnt.baseline = baseline;
     predicted
+}
+
+/// What gauges showed of the flights of a ledger, by START and FLIGHT.
+struct GaugesOf<'l>(BTreeMap<(&'l str, &'l str), GaugeBurn>);
+
+impl<'l> GaugesOf<'l> {
+    fn ledger(ledger: &'l [LedgerEntry]) -> Self {
+        let of = |entry: &'l LedgerEntry| {
+            Some(((entry.start.as_str(), entry.flight.as_str()), entry.gauges?))
+        };
+        Self(ledger.iter().filter_map(of).collect())
+    }
+
+    fn of(&self, identity: &FlightIdentity) -> Option<GaugeBurn> {
+        if self.0.is_empty() {
+            return None;
+        }
+        self.0.get(&(identity.start.to_string().as_str(), identity.flight.as_str())).copied()
+    }
 }
 
 /// Says where flights did not settle that drag is physical, and where they speak against it.

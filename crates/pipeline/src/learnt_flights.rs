@@ -4,6 +4,7 @@
 use crate::columns::Columns;
 use crate::csv_cell;
 use crate::model_file::LedgerEntry;
+use diagnose::GaugeBurn;
 use flight::{Segment, Timestamp};
 
 /// A flight that was learnt.
@@ -35,6 +36,13 @@ pub fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
     columns.count("samples", entries().map(|entry| entry.samples));
     columns.count("segments", entries().map(|entry| entry.segments));
     columns.count("outside_table", entries().map(|entry| entry.outside_table));
+    let gauges =
+        |of: fn(&GaugeBurn) -> f64| entries().map(move |entry| entry.gauges.as_ref().map(of));
+    if entries().any(|entry| entry.gauges.is_some()) {
+        columns.number("gauged_kg", gauges(|gauges| gauges.gauged_kg));
+        columns.number("metered_kg", gauges(|gauges| gauges.metered_kg));
+        columns.number("gauged_std_kg", gauges(|gauges| gauges.deviation_kg));
+    }
     columns.to_csv()
 }
 
@@ -69,6 +77,17 @@ pub fn begun(
         };
         let instant = |field: usize| text(field).parse::<Timestamp>().map_err(|_| wrong(field));
         let count = |field: usize| text(field).parse::<u64>().map_err(|_| wrong(field));
+        let number = |field: usize| text(field).parse::<f64>().map_err(|_| wrong(field));
+        // Columns that are there where any flight has gauges.
+        let gauges = if text(7).is_empty() {
+            None
+        } else {
+            Some(GaugeBurn {
+                gauged_kg: number(7)?,
+                metered_kg: number(8)?,
+                deviation_kg: number(9)?,
+            })
+        };
         flights.push(KnownFlight {
             start: instant(1)?,
             end: instant(2)?,
@@ -80,6 +99,7 @@ pub fn begun(
                 samples: count(4)?,
                 segments: count(5)?,
                 outside_table: count(6)?,
+                gauges,
             },
         });
     }
@@ -132,6 +152,7 @@ mod tests {
                 samples: 12,
                 segments: 3,
                 outside_table: 1,
+                gauges: None,
             },
             start: "2024-03-01T10:00:00Z".parse().unwrap(),
             end: "2024-03-01T12:00:00.5Z".parse().unwrap(),

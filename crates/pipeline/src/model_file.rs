@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use adapt::paper::State as PaperState;
-use diagnose::Baseline;
+use diagnose::{Baseline, GaugeBurn};
 use effects::ExtendedModel;
 use lut::Table;
 use perf_model::{Guide, GuidePoint, InitialModel};
@@ -220,6 +220,9 @@ pub struct LedgerEntry {
     pub segments: u64,
     /// Segments that the grid refused.
     pub outside_table: u64,
+    /// Fuel burned by gauges and by meters, where fuel quantity is recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gauges: Option<GaugeBurn>,
 }
 
 /// Smallest and largest value of a guide's rows; `None` of a guide without any.

@@ -214,7 +214,11 @@ impl Models {
         types.dedup();
         Err(NoModel::Type {
             found: aircraft_type.to_owned(),
-            expected: types.iter().map(|t| format!("{t:?}")).collect::<Vec<_>>().join(" or "),
+            expected: if types.is_empty() {
+                "a model: there is none".to_owned()
+            } else {
+                types.iter().map(|t| format!("{t:?}")).collect::<Vec<_>>().join(" or ")
+            },
         })
     }
 }

@@ -61,6 +61,7 @@ fn learnt(mut model: ModelFile, law: LawChoice) -> ModelFile {
         samples: read.reduced.samples as u64,
         segments: 0,
         outside_table: 0,
+        gauges: read.reduced.gauges,
     };
     let flight = FlightToLearn { entry, segments: &read.reduced.segments };
     let result = learn_flight(&model.initial, &mut learnt, &flight).unwrap();

@@ -190,6 +190,7 @@ pub(crate) fn adapted(
             samples: flight.samples as u64,
             segments: 0,
             outside_table: 0,
+            gauges: flight.gauges,
         };
         let lesson = FlightToLearn { entry, segments: &flight.segments };
         learning::learn_flight(&initial, &mut learnt, &lesson)?;

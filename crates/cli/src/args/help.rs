@@ -10,8 +10,8 @@ const STATUS: &str = "\
 Exit status: 0 done; 1 done, but some input was refused (each refusal on standard error);
 2 not done, the reason is on standard error and nothing that existed has changed.";
 const STATUS_OF_MONITOR: &str = "\
-Exit status: 0 done; 2 not done, the reason is on standard error; 3 done, and a rule of --alert
-fired.";
+Exit status: 0 done; 1 done, but for a tail whose files are damaged; 2 not done, the reason is on
+standard error; 3 done, and a rule of --alert fired (also where 1 would be).";
 const STATUS_OF_PROGRAM: &str = "\
 First steps:
   cruisefit demo                 the whole chain on embedded data

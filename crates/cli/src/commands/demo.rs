@@ -166,8 +166,10 @@ fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<
     diagnose_later(folder, "later", "diagnosis", progress, text)?;
     let with = simulated_reports::demonstration_later(Switch::On)?;
     simulated_reports::write(&with, &folder.join("later-gauges"), progress)?;
-    let _ =
-        writeln!(text, "As advised: the same flights with the tank gauges recorded (column FQ).\n");
+    let _ = writeln!(
+        text,
+        "As advised: the same flights with the tank gauges recorded (column FQ), as those that taught the model have them.\n"
+    );
     diagnose_later(folder, "later-gauges", "diagnosis-gauges", progress, text)?;
     let opened = read_text(&sealed)?;
     let truth: ::simulate::Truth =

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use flight::Timestamp;
 use pipeline::adaptation::{RemainderChoice, materials, rebuild, result_of, settled};
+use pipeline::file_names::page_file_of_tail;
 use pipeline::learning;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
@@ -28,13 +29,17 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
         ));
     }
     let busy = Busy::from_option(arguments.wait);
-    let folder = Folder::open(&arguments.folder, Beginning::Continue, busy)?;
+    let mut folder = Folder::open(&arguments.folder, Beginning::Continue, busy)?;
     let tail = &arguments.tail;
     let Some(begun) = folder.state_of(tail).map(|state| state.begun.clone()) else {
         let known: Vec<String> = folder.tails().into_iter().collect();
         return Err(Failure::BadArgument {
             argument: "--tail",
-            reason: format!("no tail {tail:?} in the folder; it holds {}", known.join(", ")),
+            reason: if known.is_empty() {
+                format!("no tail {tail:?} in the folder, which holds none")
+            } else {
+                format!("no tail {tail:?} in the folder; it holds {}", known.join(", "))
+            },
         });
     };
     let stored = folder.load(tail)?;
@@ -53,6 +58,7 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
     let left = flights.len();
     if flights.is_empty() {
         states.remove(tail);
+        folder.removes([page_file_of_tail(tail)]);
     } else {
         let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
             argument: "--flight",

@@ -66,8 +66,11 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     let found: Vec<Vec<ConditionOptimum>> =
         asked.par_iter().map(|condition| optimum::at(&model, *condition, &question)).collect();
     let conditions: Vec<ConditionOptimum> = found.into_iter().flatten().collect();
+    let json = OptimumDocument::new(&file, cost_index, &conditions)
+        .to_json()
+        .map_err(|error| Failure::bad_file(&arguments.model, error))?;
     for path in &arguments.output {
-        write(path, &OptimumDocument::new(&file, cost_index, &conditions), &conditions)?;
+        write(path, &json, &conditions)?;
     }
     let highest = optimum::highest_known_level(&file).map(PressureAltitude::to_feet);
     let mut text = optimum::table(&conditions, highest);
@@ -81,16 +84,11 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     for path in &arguments.output {
         let _ = writeln!(text, "Written to {}", show(path));
     }
-    Ok(Outcome::text(text))
+    Ok(Outcome::with_json(text, json))
 }
 
-fn write(
-    path: &Path,
-    document: &OptimumDocument<'_>,
-    conditions: &[ConditionOptimum],
-) -> Result<(), Failure> {
+fn write(path: &Path, json: &str, conditions: &[ConditionOptimum]) -> Result<(), Failure> {
     if ending(path) == Some("json") {
-        let json = document.to_json().map_err(|error| Failure::unwritable(path, error))?;
         write_result(path, json.as_bytes())
     } else {
         columns::write(&optimum::columns(conditions), Some(path))

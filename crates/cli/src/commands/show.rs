@@ -7,6 +7,7 @@ mod state;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use ::diagnose::Baseline;
 use lut::surface::Basis;
 
 use crate::args::ShowArgs;
@@ -17,6 +18,7 @@ use crate::folder::state::NAME;
 use crate::models::model_of_bytes;
 use pipeline::model_file::{AppliedRecord, LawState, Learnt, ModelFile};
 use pipeline::monitoring::{self, MonitorDocument, Rows, SCHEMA as MONITOR};
+use pipeline::statistics::NORMAL_95;
 use pipeline::summary::{SCHEMA as SUMMARY, Summary, aligned};
 
 /// What a gzip file begins with (RFC 1952, section 2.3.1).
@@ -201,6 +203,15 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
         .collect();
     if !means.is_empty() {
         let _ = writeln!(text, "reference means: {}", means.join(", "));
+    }
+    if let Some(level) = learnt.baseline.as_ref().and_then(Baseline::gauges) {
+        let _ = writeln!(
+            text,
+            "tank gauges against the flow meters: {:+.2} ± {:.2} % of what is burnt ({} flights)",
+            100.0 * level.mean,
+            100.0 * NORMAL_95 * level.deviation,
+            level.flights
+        );
     }
 }
 

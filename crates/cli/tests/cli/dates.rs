@@ -77,3 +77,29 @@ fn a_start_that_stands_alone_ages_nothing() {
         assert!((wrong - right).abs() <= 0.005 * right, "{wrong} observations, {right} before");
     }
 }
+
+/// A pause of five years: the first flight after it stands alone until the second one confirms its date. The folder is then the one
+/// that all reports at once make.
+#[test]
+fn a_date_that_a_later_flight_confirms_is_learnt_as_it_is() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = ageing_model(scratch.path());
+    let after_the_pause = |flight: u32| {
+        let moved = scratch.path().join(format!("{flight:04}.txt"));
+        let text = std::fs::read_to_string(report(flight)).unwrap();
+        std::fs::write(&moved, text.replacen("START    2019-", "START    2024-", 1)).unwrap();
+        moved
+    };
+    let [first, second] = [6, 7].map(after_the_pause);
+    let before: Vec<PathBuf> = (1..=5).map(report).collect();
+    let (at_once, nights) = (scratch.path().join("once"), scratch.path().join("nights"));
+    let all = [&before[..], &[first.clone(), second.clone()]].concat();
+    adapt(&model, &at_once, &all, &[]).expect(0);
+    adapt(&model, &nights, &before, &[]).expect(0);
+    adapt(&model, &nights, &[first], &[]).expect(0).says("within 400 days");
+    adapt(&model, &nights, &[second], &[]).expect(0);
+    for name in ["models/SIM-01.ron", "flights/SIM-01.csv", "deviations/SIM-01.csv"] {
+        let [one, other] = [&at_once, &nights].map(|folder| std::fs::read(folder.join(name)));
+        assert_eq!(one.unwrap(), other.unwrap(), "{name}");
+    }
+}

@@ -417,9 +417,17 @@ fn forgetting_the_last_flight_removes_the_tail() {
     let model = initial_model(scratch.path());
     let output = scratch.path().join("out");
     adapt(&model, &output, &[report(1)], &[]).expect(0);
-    cruisefit(&["forget", output.to_str().unwrap(), "--tail", "SIM-01", "--flight", "0001"])
-        .expect(0);
+    // As a fleet of many tails has one.
+    std::fs::create_dir_all(output.join("pages")).unwrap();
+    std::fs::write(output.join("pages/SIM-01.html"), "old").unwrap();
+    let forget = ["forget", output.to_str().unwrap(), "--tail", "SIM-01", "--flight", "0001"];
+    cruisefit(&forget).expect(0);
     assert!(!output.join("models/SIM-01.ron").exists());
+    assert!(!output.join("pages/SIM-01.html").exists());
+    cruisefit(&forget).expect(2).says("which holds none");
+    let report_1 = report(1);
+    let evaluate = ["evaluate", report_1.to_str().unwrap(), "--model", output.to_str().unwrap()];
+    cruisefit(&evaluate).expect(2).says("expected a model: there is none");
     // It is a folder of `adapt` all the same.
     cruisefit(&["monitor", output.to_str().unwrap()]).expect(2).says("holds no tail");
     adapt(&model, &output, &[report(2)], &[]).expect(0);

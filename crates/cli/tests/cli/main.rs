@@ -21,6 +21,7 @@ mod few_flights;
 mod figures;
 mod fleet;
 mod folder;
+mod gauges;
 mod guide;
 mod hostile_system;
 mod json_schema;

@@ -31,6 +31,9 @@ fn optima_as_table_csv_and_json() {
         serde_json::from_slice(&std::fs::read(schema).unwrap()).unwrap();
     assert_eq!(violations(&schema, &document), Vec::<String>::new());
 
+    let printed = cruisefit(&arguments(&[&asked[..4], &["--json"]].concat())).expect(0);
+    assert_eq!(printed.stdout.as_bytes(), first);
+
     let table = csv_columns(&csv);
     let number = |name: &str, row: usize| table[name][row].parse::<f64>().unwrap();
     assert!(!table["mach"].is_empty());

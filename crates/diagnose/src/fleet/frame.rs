@@ -56,6 +56,8 @@ pub struct FleetTail {
     pub flights: usize,
     /// Segments that were used.
     pub segments: usize,
+    /// Mean gap of the segments, 100·ln(recorded/predicted) fuel flow.
+    pub mean_gap_percent: f64,
 }
 
 /// What tails share beyond the effects: columns of unit prior variance, then those of the smooth discrepancy.
@@ -189,6 +191,8 @@ impl<'a> FleetFrame<'a> {
             references: self.references,
             flights: data.flights.len(),
             segments: data.segments.len(),
+            mean_gap_percent: 100.0 * data.segments.iter().map(|row| row.residual[0]).sum::<f64>()
+                / data.segments.len() as f64,
         })
     }
 }
@@ -268,7 +272,16 @@ impl FleetTail {
         shared: SharedColumns,
         (hidden, references): (Vec<HiddenParameter>, EffectReferences),
     ) -> Self {
-        Self { gram, effects, shared, hidden, references, flights: 1, segments: 1 }
+        Self {
+            gram,
+            effects,
+            shared,
+            hidden,
+            references,
+            flights: 1,
+            segments: 1,
+            mean_gap_percent: 0.0,
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::baseline::layout::{NuisanceLayout, Uncertain};
 use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
-use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION};
+use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION, GAUGE_GAIN_DEVIATION};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::FlightWhitening;
@@ -180,12 +180,19 @@ impl<'a> Design<'a> {
                 matrix[(rows - 1, column)] = signature / gauge.deviation;
             }
             for column in self.nuisance_columns(&self.nuisance_parts.layout.gauges) {
-                matrix[(rows - 1, column)] = 0.01 * MEASURED_BURN_PERCENT / gauge.deviation;
+                matrix[(rows - 1, column)] = self.gauge_gain_deviation() / gauge.deviation;
             }
             matrix[(rows - 1, self.columns - 1)] = gauge.residual / gauge.deviation;
         }
         self.scale_nuisance(&mut matrix);
         matrix
+    }
+
+    /// What is uncertain of the gain of gauges against meters: all of it, but where the flights that taught have shown it.
+    fn gauge_gain_deviation(&self) -> f64 {
+        let learnt = self.nuisance_parts.baseline.and_then(Baseline::gauges);
+        let known = learnt.map_or(GAUGE_GAIN_DEVIATION, |level| level.deviation);
+        known.hypot(0.01 * MEASURED_BURN_PERCENT)
     }
 
     fn write_columns(&self, rows: &mut RowsOfSegment<'_>, scratch: &mut [f64]) {

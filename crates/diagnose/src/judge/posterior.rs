@@ -224,8 +224,9 @@ pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> 
         let is_best = table.is_none() && posterior.scored.hypothesis == best.hypothesis;
         causes.push(Cause {
             effect: id_of(library, posterior.effect),
-            probability: posterior.probability * inside,
-            probability_flat: posterior.flat * inside,
+            // Sums of many may pass one by rounding.
+            probability: (posterior.probability * inside).min(1.0),
+            probability_flat: (posterior.flat * inside).min(1.0),
             class: class_of(distances, library, posterior),
             magnitude: size_of(library, posterior),
             rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),

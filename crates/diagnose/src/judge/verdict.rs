@@ -6,6 +6,7 @@ use flight::effect::{DrivingVariable, EffectId};
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
+use crate::judge::pair::{PairEvidence, companion};
 use crate::judge::posterior::{CauseEvidence, Posterior, class_of, closed_unseen, id_of, presence};
 use crate::judge::table::TableFinding;
 use crate::library::{Library, Testable};
@@ -81,6 +82,10 @@ pub(crate) struct Findings<'a> {
 }
 
 impl<'a> Findings<'a> {
+    const fn of_pairs(&self) -> PairEvidence<'a> {
+        PairEvidence { analysis: self.analysis, library: self.library, distances: self.distances }
+    }
+
     /// What causes are judged by.
     pub(crate) const fn of_causes(&self) -> CauseEvidence<'a> {
         CauseEvidence {
@@ -150,7 +155,8 @@ pub(crate) fn named_gap(
     let inside = 1.0 - outside.probability;
     let doubt = |driver: &DrivingVariable| {
         let driven = posteriors.iter().filter(|posterior| drivers(posterior).contains(driver));
-        1.0 - inside * driven.map(|posterior| posterior.probability).sum::<f64>()
+        // A sum of many may pass one by rounding.
+        (1.0 - inside * driven.map(|posterior| posterior.probability).sum::<f64>()).max(0.0)
     };
     let drivers = drivers(top).iter().map(|driver| (Variable::from(*driver), doubt(driver)));
     Some(NamedGap { gap, drivers: drivers.collect() })
@@ -273,18 +279,29 @@ fn class_and_credible(
 
 /// The effects that the leading cause is of, and what it could be taken for.
 fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
-    let &Findings { analysis, library, advisor, outside, posteriors, .. } = findings;
+    let &Findings { library, advisor, outside, posteriors, .. } = findings;
     let all: Vec<&Posterior> = posteriors.iter().collect();
-    let effects = set_of(analysis, library, top);
+    let pairs = findings.of_pairs();
+    let effects = set_of(&pairs, top);
     let [mut class, credible] = class_and_credible(findings, top, &all, &effects);
     class.extend(&credible);
+    let mut separations = separations(advisor, library, top, &class);
+    let mut beside = Vec::new();
+    let partner = pairs.partner(top).zip(top.effect).filter(|_| effects.len() > 1);
+    if let Some((partner, leading)) = partner {
+        let companion = companion(&pairs, outside, &effects, (partner, leading));
+        let found = (partner.column, partner.size);
+        separations.extend(apart(advisor, library, found, &companion.class));
+        beside.push(companion);
+    }
+    best_first(&mut separations);
     Found {
         effects,
-        probability: top.probability * (1.0 - outside.probability),
-        beside: vec![],
+        probability: (top.probability * (1.0 - outside.probability)).min(1.0),
+        beside,
         closure: closed_unseen(findings.unseen),
         rest,
-        separations: separations(advisor, library, top, &class),
+        separations,
         class,
         credible,
     }
@@ -302,33 +319,37 @@ fn credible<'a>(posteriors: &[&'a Posterior]) -> impl Iterator<Item = &'a Poster
 }
 
 /// The effects that act together, where a pair is more probable than not; else the top effect.
-fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<EffectId> {
-    let (best, probability) = &analysis.models[0];
+fn set_of(findings: &PairEvidence<'_>, top: &Posterior) -> Vec<EffectId> {
+    let PairEvidence { analysis, library, .. } = *findings;
     let mut set = vec![id_of(library, top.effect)];
-    if *probability > MORE_PROBABLE_THAN_NOT {
+    let (best, probability) = &analysis.models[0];
+    let scatter = best.hypothesis.flight_scatter_percent;
+    if *probability > MORE_PROBABLE_THAN_NOT && scatter.is_some() {
         let members = best.hypothesis.columns.iter().map(|&c| Some(library.columns[c].effect));
-        let scatter = best.hypothesis.flight_scatter_percent.map(|_| None);
-        for member in members.chain(scatter) {
+        for member in members.chain([None]) {
             let id = id_of(library, member);
             if !set.contains(&id) {
                 set.push(id);
             }
         }
+    } else if let Some(partner) = findings.partner(top) {
+        set.push(library.effects[library.columns[partner.column].effect].id);
     }
     set
 }
 
-/// Who is asked for advice: about the leading effect of every probable cause, and what could be taken for it.
+/// Who is asked for advice: about the leading effect of every probable cause, what acts together with it, and what could be taken
+/// for either; about none where there are no causes.
 pub(crate) fn advisor<'a>(
     problem: Problem<'a>,
     distances: &'a Distances,
     classes: &[Vec<usize>],
     posteriors: &[Posterior],
-    detected: bool,
+    analysis: &Analysis,
 ) -> Advisor<'a> {
     let library = problem.library;
-    let top = posteriors.first().filter(|_| detected);
-    let found: Vec<usize> =
+    let top = posteriors.first();
+    let mut found: Vec<usize> =
         top.and_then(Posterior::column_and_size).map(|(column, _)| column).into_iter().collect();
     let mut likely: Vec<usize> = Vec::new();
     if let Some(class) = top.and_then(|top| top.confused(distances, library)) {
@@ -336,6 +357,8 @@ pub(crate) fn advisor<'a>(
         likely.extend(credible(&all).filter_map(|posterior| posterior.effect));
         likely.extend(class);
     }
+    let pairs = PairEvidence { analysis, library, distances };
+    found.extend(top.and_then(|top| pairs.partner(top)).map(|partner| partner.column));
     Advisor::new(problem, distances, classes, &found, &likely)
 }
 
@@ -345,15 +368,23 @@ fn separations(
     top: &Posterior,
     class: &[EffectId],
 ) -> Vec<Separation> {
-    let Some((column, size)) = top.column_and_size() else { return vec![] };
-    let mut all = Vec::new();
-    for (index, effect) in library.effects.iter().enumerate() {
-        if Some(index) != top.effect && class.contains(&effect.id) {
-            all.extend(advisor.between(column, size, index));
-        }
-    }
+    let Some(found) = top.column_and_size() else { return vec![] };
+    let mut all = apart(advisor, library, found, class);
     best_first(&mut all);
     all
+}
+
+/// What would tell a column at a size from the others of its class.
+fn apart(
+    advisor: &Advisor<'_>,
+    library: &Library,
+    (column, size): (usize, f64),
+    class: &[EffectId],
+) -> Vec<Separation> {
+    let own = library.columns[column].effect;
+    let others = library.effects.iter().enumerate();
+    let others = others.filter(|(index, effect)| *index != own && class.contains(&effect.id));
+    others.flat_map(|(index, _)| advisor.between(column, size, index)).collect()
 }
 
 #[cfg(test)]

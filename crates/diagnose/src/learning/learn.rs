@@ -11,6 +11,7 @@ use crate::learning::physical::Physics;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::priors::REMAINDER_LENGTHS;
+use crate::residuals::gauges::level_of;
 use crate::residuals::reference::Reference;
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
@@ -161,6 +162,7 @@ impl Baseline {
             against_physics: 0,
             interval_factor: 1.0,
             rms: f64::NAN,
+            gauges: level_of(&data.flights),
         };
         let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0) };
         let layout = baseline.layout();

@@ -22,7 +22,7 @@ pub struct Separation {
 pub enum Measurement {
     /// Weigh the aircraft, to 0.3 % of its mass.
     Weighing,
-    /// Compare the flow meters with the tank gauges, to 0.15 %.
+    /// Compare the flow meters with the fuel uplifted, or with tank gauges held against it, to 0.15 %.
     TankGauges,
     /// Compare static air temperature with a reanalysis, to 0.5 K.
     TemperatureReanalysis,

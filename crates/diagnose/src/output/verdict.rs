@@ -77,7 +77,8 @@ pub struct Found {
     pub credible: Vec<EffectId>,
     /// Probability of the first effect.
     pub probability: f64,
-    /// What acts beside a guide's table that is off, and no table can hold, the most probable first.
+    /// What acts beside a guide's table that is off, and no table can hold, the most probable first; else what is named together
+    /// with the first effect, with what these flights cannot tell from it.
     pub beside: Vec<Beside>,
     /// How much of the gap the effects close on unseen flights; `None` where the gap is too small to measure it.
     pub closure: Option<Closure>,
@@ -87,12 +88,12 @@ pub struct Found {
     pub separations: Vec<Separation>,
 }
 
-/// What acts beside a guide's table that is off.
+/// What acts beside a guide's table that is off, or together with the leading effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beside {
     /// The effect.
     pub effect: EffectId,
-    /// Effects that this data cannot tell from it, itself first.
+    /// Effects that it may be instead, itself first.
     pub class: Vec<EffectId>,
     /// Probability that it acts.
     pub probability: f64,

@@ -15,7 +15,7 @@ use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::library::Library;
 use crate::output::note::{LeftOutReason, Note};
 use crate::residuals::chords::chord_errors;
-use crate::residuals::gauges::gauge_row;
+use crate::residuals::gauges::{calibrate, gauge_row};
 use crate::residuals::predictor::Predictor;
 use crate::residuals::reference::Reference;
 use crate::residuals::rows::{FlightRows, SegmentRow};
@@ -201,6 +201,10 @@ impl<'a> PreparedFlights<'a> {
                 let segments = first..data.segments.len();
                 data.flights.push(FlightRows { segments, gauge, start_s, share: 1.0 });
             }
+        }
+        // Learning finds level and scatter itself.
+        if !matches!(reference, Reference::Untaught) {
+            calibrate(&mut data.flights, reference.baseline().and_then(Baseline::gauges));
         }
         data
     }

@@ -2,6 +2,7 @@
 
 use flight::column::Column;
 use flight::{Segment, Track};
+use serde::{Deserialize, Serialize};
 
 use crate::priors::GAUGE_DEVIATION_KG;
 use crate::thresholds::{LONGEST_STEP, SMALLEST_BURN_KG};
@@ -16,7 +17,8 @@ pub struct FlightRecord<'a> {
 }
 
 /// Fuel burned between two moments of one flight, by the tank gauges and by the flow meters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct GaugeBurn {
     /// Fall of the gauged fuel quantity, kg.
     pub gauged_kg: f64,

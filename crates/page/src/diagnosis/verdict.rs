@@ -7,8 +7,8 @@ use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_text::described;
 use pipeline::diagnosis_words::{
-    NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, advice, are_few, is_open, near_and_far, others_of_class,
-    outside_words, region_words, silent_words, told_size,
+    NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, advice, are_few, is_open, near_and_far, others_beside,
+    others_of_class, outside_words, region_words, silent_words, told_size,
 };
 
 use super::Tail;
@@ -83,6 +83,9 @@ fn what(diagnosis: &Diagnosis) -> Markup {
                 @else { b { @if place == 0 { (capitalised(&phrase)) } @else { (phrase) } } }
                 " " span.id { "(" (id) ")" }
                 @if let Some((_, words)) = size { ": " (words) }
+                @if place > 0 {
+                    @for other in others_beside(found, *id) { ", or " (effect(diagnosis, other)) " in its place" }
+                }
             }
             @let others = others_of_class(found);
             @if are_few(&others) {

@@ -29,7 +29,7 @@ pub(super) fn card(fleet: &Fleet<'_>) -> Markup {
         dl.verdict.gap[!record.findings.is_empty()] {
             dt { "What all share" }
             dd {
-                @if of_type.is_empty() { b { (nothing_shared(record.taught)) } }
+                @if of_type.is_empty() { b { (nothing_shared(record.taught, record.mean_gap_percent)) } }
                 @for found in &of_type { (shared(found)) }
             }
             dt { "Which tails differ" }
@@ -163,10 +163,13 @@ fn what_to_do(fleet: &Fleet<'_>) -> Markup {
     let clear = |found: &&FleetFindingRecord| found.class.len() == 1;
     let on_tails = || findings.iter().filter(|found| found.tail.is_some()).map(Whose::of);
     let sensors = on_tails().any(|whose| whose == Whose::Sensor);
+    let undecided = fleet.record.mean_gap_percent.is_some_and(|gap| gap.is_shared());
     let perhaps = on_tails().any(|whose| whose == Whose::Open);
     html! {
         @if !fleet.record.taught {
             div { (TEACH_IT_FIRST) }
+        } @else if undecided && findings.iter().all(|found| found.tail.is_some()) {
+            div { "Do not leave the model as it is: look at the tails' own pages, each of which says what would decide." }
         } @else if findings.is_empty() {
             "Nothing: the model can stay as it is."
         } @else if findings.iter().filter(clear).any(|found| found.tail.is_none()) {

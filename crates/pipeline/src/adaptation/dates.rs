@@ -75,6 +75,23 @@ impl Dates {
     }
 }
 
+/// Whether new flights change what a model takes the dates of those that it has learnt for: they confirm one that stood alone, or
+/// leave one alone.
+pub(super) fn change_with<'f>(
+    model: &ModelFile,
+    new: impl Iterator<Item = &'f FlightRead>,
+) -> bool {
+    let Some(learnt) = model.learnt.as_ref().filter(|_| ages(model)) else { return false };
+    let known: Vec<Timestamp> =
+        learnt.ledger.iter().filter_map(|entry| entry.start.parse().ok()).collect();
+    let new: Vec<Timestamp> = new.map(|flight| flight.reduced.identity.start).collect();
+    known.iter().enumerate().any(|(own, start)| {
+        let before = [&known[..own], &known[own + 1..]].concat();
+        let after = [&before[..], &new[..]].concat();
+        dates::instead_of(*start, &before) != dates::instead_of(*start, &after)
+    })
+}
+
 /// Whether what a model knows ages.
 fn ages(model: &ModelFile) -> bool {
     let by_bayes = model.learnt.as_ref().is_some_and(|l| matches!(l.law, LawState::Bayes { .. }));

@@ -7,7 +7,7 @@ use super::digits;
 use crate::diagnosis_words::{
     LEAST_TOLD, NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, OTHERS_TOLD, SEPARATIONS_TOLD, TOLD_APART,
     are_few, capital, distances_words, follows, is_open, joined, measurement_words, near_and_far,
-    others_of_class, told_size, variable_words,
+    others_beside, others_of_class, told_size, variable_words,
 };
 
 /// A guide whose drag is off, and what acts in addition.
@@ -90,7 +90,15 @@ pub(super) fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         } else if place == 0 {
             format!("Cause: {what}, probability {:.2}.", found.probability)
         } else {
-            format!("Together with: {what}.")
+            let others = others_beside(found, *id);
+            if others.is_empty() {
+                format!("Together with: {what}.")
+            } else {
+                format!(
+                    "Together with: {what}; or {}, which these flights cannot tell from it.",
+                    joined(&others, ", ")
+                )
+            }
         });
     }
     if !open {

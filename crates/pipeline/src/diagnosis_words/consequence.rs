@@ -8,8 +8,12 @@ use flight::effect::{EffectGroup, EffectId};
 pub fn follows(found: &Found) -> Option<String> {
     let first = found.effects.first()?;
     // What acts together is what it is; only what could be meant in its place is open.
-    let mut others = found.class.iter().filter(|id| !found.effects.contains(id));
-    if others.any(|id| id.is_of_recordings() != first.is_of_recordings()) {
+    let is_other = |id: &&EffectId| !found.effects.contains(id);
+    let is_mixed = |id: EffectId, class: &[EffectId]| {
+        class.iter().filter(is_other).any(|other| other.is_of_recordings() != id.is_of_recordings())
+    };
+    let mut beside = found.beside.iter();
+    if is_mixed(*first, &found.class) || beside.any(|of| is_mixed(of.effect, &of.class)) {
         return Some(
             "Errors of the recording and changes of the aircraft are both possible: only the latter change predictions. \
              Find out which before you apply one."
@@ -89,5 +93,12 @@ mod tests {
         let both = told(&[DragFactor, TemperatureBias], &[DragFactor]);
         assert!(both.contains("temperature_bias is an error of the recording"), "{both}");
         assert!(told(&[DragFactor], &[DragFactor, TemperatureBias]).contains("Find out which"));
+        // What acts together with the first may be the meter or the engine.
+        let gain = EffectId::FuelFlowGainEngine(2);
+        let class = vec![gain, EffectId::TsfcEngine(2)];
+        let mut pair = found(&[DragFactor, gain], &[DragFactor]);
+        assert!(follows(&pair).unwrap().contains("is an error of the recording"));
+        pair.beside = vec![diagnose::Beside { effect: gain, class, probability: 0.6 }];
+        assert!(follows(&pair).unwrap().contains("Find out which"));
     }
 }

@@ -5,6 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{DiagnosedFleet, level_name};
 use crate::diagnosis_document::MagnitudeRecord;
+use crate::statistics::{ErrorStatistics, mean_half_width95_by_flight};
+
+/// Mean gap of a fleet, %, below which nothing is said of it. Our choice: twice the smallest gap of a tail.
+const LEAST_SHARED_PERCENT: f64 = 0.3;
 
 /// All tails of a type.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,6 +20,9 @@ pub struct FleetRecord {
     /// Whether every model has learnt flights; documents of older programs do not say.
     #[serde(default = "taught")]
     pub taught: bool,
+    /// Mean gap of the tails, whatever makes it; `null` of one tail and in documents of older programs.
+    #[serde(default)]
+    pub mean_gap_percent: Option<FleetGap>,
     /// What was found, that of the type first, then tail by tail.
     pub findings: Vec<FleetFindingRecord>,
     /// Expected share of false ones among them.
@@ -34,6 +41,48 @@ pub struct FleetRecord {
 
 const fn taught() -> bool {
     true
+}
+
+/// Mean gap of the tails of a type, 100·ln(recorded/predicted) fuel flow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FleetGap {
+    /// The mean over tails, each as much.
+    pub value: f64,
+    /// Its 95 % interval, Student's, by tail.
+    pub ci95: [f64; 2],
+}
+
+impl FleetGap {
+    /// Of tails with these mean gaps; `None` of fewer than two.
+    #[must_use]
+    pub fn of_tails(gaps_percent: &[f64]) -> Option<Self> {
+        let each: Vec<ErrorStatistics> =
+            gaps_percent.iter().map(|gap| ErrorStatistics::from_errors(&[*gap])).collect();
+        let half = mean_half_width95_by_flight(&each)?;
+        let value = ErrorStatistics::from_errors(gaps_percent).mean?;
+        Some(Self { value, ci95: [value - half, value + half] })
+    }
+
+    /// Whether all tails share something, whatever it is: its interval does not hold zero, and it is no trifle.
+    #[must_use]
+    pub fn is_shared(&self) -> bool {
+        self.ci95[0] * self.ci95[1] > 0.0 && self.value.abs() >= LEAST_SHARED_PERCENT
+    }
+
+    /// "burn 2.06 % (1.95 to 2.17) more than the model says".
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let sign = self.value.signum();
+        let mut ends = self.ci95.map(|end| sign * end);
+        ends.sort_by(f64::total_cmp);
+        format!(
+            "burn {:.2} % ({:.2} to {:.2}) {} than the model says",
+            self.value.abs(),
+            ends[0],
+            ends[1],
+            if sign > 0.0 { "more" } else { "less" }
+        )
+    }
 }
 
 /// An effect that acts in the type or on one tail.
@@ -103,6 +152,7 @@ impl From<&DiagnosedFleet> for FleetRecord {
                 ModelOf::Tail => "tail".to_owned(),
             },
             taught: fleet.taught,
+            mean_gap_percent: fleet.mean_gap(),
             findings: diagnosis.findings.iter().map(|found| finding(fleet, found)).collect(),
             false_share: diagnosis.false_share,
             spread_of_typical: diagnosis.spread_of_typical,

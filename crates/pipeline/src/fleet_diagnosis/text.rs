@@ -5,7 +5,7 @@ use core::fmt::Write;
 use diagnose::{FleetFinding, FleetLevel, Magnitude, ModelOf};
 use flight::effect::EffectId;
 
-use super::{DiagnosedFleet, FleetRecord};
+use super::{DiagnosedFleet, FleetGap, FleetRecord};
 use crate::summary::{aligned, counted};
 
 /// Most effects that the table of tails has columns for, the most frequent ones: what a terminal of usual width holds.
@@ -17,11 +17,14 @@ pub const TEACH_IT_FIRST: &str = "The model has learnt no flight: what all tails
 
 /// What all tails share where no effect of the type was found.
 #[must_use]
-pub const fn nothing_shared(taught: bool) -> &'static str {
-    if taught {
-        "Nothing that the model lacks."
-    } else {
-        "Nothing that an error of the model's table would not explain."
+pub fn nothing_shared(taught: bool, gap: Option<FleetGap>) -> String {
+    match gap.filter(|gap| taught && gap.is_shared()) {
+        Some(gap) => format!(
+            "Something, and these flights do not decide what: all together {}, and no cause of it stands out.",
+            gap.in_words()
+        ),
+        None if taught => "Nothing that the model lacks.".to_owned(),
+        None => "Nothing that an error of the model's table would not explain.".to_owned(),
     }
 }
 
@@ -75,7 +78,11 @@ pub fn fleet_text(fleet: &DiagnosedFleet) -> String {
     let of_type: Vec<&FleetFinding> =
         diagnosis.findings.iter().filter(|found| found.level == FleetLevel::Type).collect();
     if of_type.is_empty() {
-        let _ = writeln!(text, "  What all tails share: {}", nothing_shared(fleet.taught));
+        let _ = writeln!(
+            text,
+            "  What all tails share: {}",
+            nothing_shared(fleet.taught, fleet.mean_gap())
+        );
     }
     for found in of_type {
         let _ = writeln!(text, "  The model of the type lacks {}.", told(found));

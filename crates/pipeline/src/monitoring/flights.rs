@@ -1,9 +1,11 @@
 //! What each flight shows against a tail's models: the initial one, the learnt one, and the learnt one as it was before that
 //! flight. All that `monitor` needs of a flight.
 
+use atmos::isa;
 use flight::{MAXIMUM_ENGINES, Segment, Timestamp};
-use monitor::FlightDeviation;
+use monitor::{CONDITIONS, FlightDeviation};
 use serde::{Deserialize, Serialize};
+use units::{Pressure, PressureAltitude, Temperature};
 
 use crate::evaluation::TailResult;
 use crate::learning::{Forecast, LearningCurve, deviation_percent};
@@ -30,7 +32,7 @@ pub struct MonitoredFlight {
     pub engines: Vec<FlightDeviation>,
     /// Mean of what the learnt model predicts more than the initial one over the flight's segments, %.
     pub learnt_over_initial_percent: f64,
-    /// Fuel used between the first and the last segment, kg.
+    /// Fuel used from the beginning of the first segment to the end of the last one, kg.
     pub cruise_fuel_kg: f64,
     /// Conditions flown.
     pub conditions: MeanConditions,
@@ -83,6 +85,22 @@ impl MeanConditions {
     }
 }
 
+impl MeanConditions {
+    /// What a flight's deviation may depend on: Mach number, lift coefficient (but for a constant factor), pressure altitude, ISA
+    /// deviation and mass. Those of all flights together for a flight of which none are known.
+    pub(super) fn to_monitor(self, of_all: &Self) -> [f64; CONDITIONS] {
+        let known = if self.segments > 0 { self } else { *of_all };
+        let altitude = PressureAltitude::meters(known.pressure_altitude_m);
+        // Flights were flown where the atmosphere is defined.
+        let pressure_pa = isa::pressure(altitude).map_or(f64::NAN, Pressure::to_pascals);
+        let isa_k = isa::temperature(altitude).map_or(f64::NAN, Temperature::to_kelvin);
+        let lift = known.mass_kg / (pressure_pa * known.mach * known.mach);
+        let isa_deviation_k = known.static_air_temperature_k - isa_k;
+        [known.mach, lift, known.pressure_altitude_m, isa_deviation_k, known.mass_kg]
+            .map(|value| if value.is_finite() { value } else { 0.0 })
+    }
+}
+
 /// What a segment shows; `None` where a prediction has no value.
 #[derive(Clone, Copy, Debug)]
 struct Shown<'s> {
@@ -129,13 +147,18 @@ pub(super) fn monitored<'s>(
             Shown { segment, initial: deviation(initial), learnt: deviation(*learnt) }
         })
         .collect();
-    shown
-        .chunk_by(|one, other| one.segment.identity == other.segment.identity)
-        .map(|flight| flight_of(flight, curve, engines))
-        .collect()
+    let flights: Vec<&[Shown<'s>]> =
+        shown.chunk_by(|one, other| one.segment.identity == other.segment.identity).collect();
+    let usual_step_s = usual_step_s(&flights);
+    flights.into_iter().map(|flight| flight_of(flight, usual_step_s, curve, engines)).collect()
 }
 
-fn flight_of(shown: &[Shown<'_>], curve: &LearningCurve, engines: usize) -> MonitoredFlight {
+fn flight_of(
+    shown: &[Shown<'_>],
+    usual_step_s: f64,
+    curve: &LearningCurve,
+    engines: usize,
+) -> MonitoredFlight {
     let identity = &shown[0].segment.identity;
     let all = |of: &dyn Fn(&Shown<'_>) -> Option<f64>| -> Option<FlightDeviation> {
         let deviations: Vec<f64> = shown.iter().filter_map(of).collect();
@@ -144,8 +167,6 @@ fn flight_of(shown: &[Shown<'_>], curve: &LearningCurve, engines: usize) -> Moni
     let by_engine = (0..engines.min(MAXIMUM_ENGINES)).map(|engine| {
         all(&|shown| Some(shown.learnt? + share_percent(shown.segment, engine, engines)?))
     });
-    let fuel_used =
-        |shown: Option<&Shown<'_>>| shown.map_or(0.0, |shown| shown.segment.means.fuel_used_kg);
     let inside = shown.iter().filter(|shown| shown.learnt.is_some()).count();
     let over: Vec<f64> = shown.iter().filter_map(|one| Some(one.initial? - one.learnt?)).collect();
     MonitoredFlight {
@@ -158,9 +179,56 @@ fn flight_of(shown: &[Shown<'_>], curve: &LearningCurve, engines: usize) -> Moni
         before_learning: curve.get(&(identity.start, identity.flight.clone())).copied(),
         engines: by_engine.collect::<Option<Vec<_>>>().unwrap_or_default(),
         learnt_over_initial_percent: over.iter().sum::<f64>() / over.len().max(1) as f64,
-        cruise_fuel_kg: (fuel_used(shown.last()) - fuel_used(shown.first())).max(0.0),
+        cruise_fuel_kg: cruise_fuel_kg(shown, usual_step_s),
         conditions: MeanConditions::mean_of(shown.iter().filter_map(conditions)),
     }
+}
+
+/// Fuel used from the beginning of the first segment to the end of the last one: between their middles, and half of each.
+fn cruise_fuel_kg(shown: &[Shown<'_>], usual_step_s: f64) -> f64 {
+    let [Some(first), Some(last)] = [shown.first(), shown.last()].map(|one| Some(one?.segment))
+    else {
+        return 0.0;
+    };
+    let step_s = sample_step_s(shown).unwrap_or(usual_step_s);
+    let half_kg = |segment: &Segment| {
+        0.5 * step_s * segment.samples() as f64 * segment.means.fuel_flow_total_kg_s
+    };
+    let between_kg = (last.means.fuel_used_kg - first.means.fuel_used_kg).max(0.0);
+    between_kg + half_kg(first) + half_kg(last)
+}
+
+/// Time from one sample to the next in the flights that show it: their median, s. Where none has two segments, that since the
+/// recordings began, which may begin late.
+fn usual_step_s(flights: &[&[Shown<'_>]]) -> f64 {
+    let known = |of: fn(&[Shown<'_>]) -> Option<f64>| -> Option<f64> {
+        let mut steps: Vec<f64> = flights.iter().filter_map(|flight| of(flight)).collect();
+        steps.sort_by(f64::total_cmp);
+        steps.get(steps.len() / 2).copied()
+    };
+    let since_start = |shown: &[Shown<'_>]| step_s((0.0, 0.0), middle(shown.first()?));
+    known(sample_step_s).or_else(|| known(since_start)).unwrap_or(0.0)
+}
+
+/// Time from one sample to the next, s: the shortest that two segments' middles show, because there may be a hole between others;
+/// `None` of one segment.
+fn sample_step_s(shown: &[Shown<'_>]) -> Option<f64> {
+    let between = shown.windows(2).filter_map(|pair| step_s(middle(&pair[0]), middle(&pair[1])));
+    between.reduce(f64::min)
+}
+
+/// Mean time and mean sample of a segment.
+fn middle(shown: &Shown<'_>) -> (f64, f64) {
+    let rows = &shown.segment.rows;
+    let ends = rows.first().zip(rows.last());
+    let row = ends.map_or(0.0, |(first, last)| 0.5 * (f64::from(*first) + f64::from(*last)));
+    (shown.segment.means.time_s, row)
+}
+
+/// Time per sample between two such middles, s; `None` where none lies between.
+fn step_s(from: (f64, f64), to: (f64, f64)) -> Option<f64> {
+    let (time_s, rows) = (to.0 - from.0, to.1 - from.1);
+    (rows > 0.0 && time_s > 0.0).then(|| time_s / rows)
 }
 
 /// Of one segment; `None` where a model does not predict it.
@@ -186,4 +254,69 @@ fn share_percent(segment: &Segment, engine: usize, engines: usize) -> Option<f64
         return None;
     }
     deviation_percent(flows[engine] * engines as f64, total)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use flight::{Cruise, FlightIdentity, SegmentMeans};
+    use units::{FuelFlowTotal, Mach, Mass, TrueAirspeed};
+
+    use super::*;
+
+    /// A segment of ten samples from a row on, one sample every 30 s, at 0.5 kg/s.
+    fn segment(flight: &str, first_row: u32) -> Segment {
+        let identity = FlightIdentity {
+            tail: "T".to_owned(),
+            start: "2024-03-01T10:00:00Z".parse().unwrap(),
+            flight: flight.to_owned(),
+        };
+        let cruise = SegmentMeans::cruise(&Cruise {
+            pressure_altitude: PressureAltitude::feet(35_000.0),
+            static_air_temperature: Temperature::kelvin(220.0),
+            mach: Mach::new(0.8),
+            true_airspeed: TrueAirspeed::meters_per_second(240.0),
+            mass: Mass::kilograms(30_000.0),
+            fuel_flow_total: FuelFlowTotal::kilograms_per_second(0.5),
+        });
+        // The recording begins 1000 s after START.
+        let time_s = 1000.0 + 30.0 * (f64::from(first_row) + 4.5);
+        Segment {
+            identity: Arc::new(identity),
+            rows: (first_row..first_row + 10).collect(),
+            means: SegmentMeans { time_s, fuel_used_kg: 0.5 * time_s, ..cruise },
+            temperature_assumed: false,
+        }
+    }
+
+    /// By hand: ten samples of 30 s at 0.5 kg/s are 150 kg, wherever they lie; from row 0 to row 40 are 40 samples, 600 kg.
+    #[test]
+    fn cruise_fuel_is_that_of_whole_segments() {
+        let segments = [segment("1", 0), segment("1", 10), segment("1", 30), segment("2", 55)];
+        let shown = || segments.iter().map(|segment| (segment, None));
+        let flights = monitored(shown(), &[None; 4], &LearningCurve::new(), 2);
+        let fuel: Vec<f64> = flights.iter().map(|flight| flight.cruise_fuel_kg).collect();
+        assert!((fuel[0] - 600.0).abs() < 1e-9 && (fuel[1] - 150.0).abs() < 1e-9, "{fuel:?}");
+    }
+
+    /// By hand: ISA at 11 000 m is 216.65 K and 22 632 Pa; a flight of which no segment was predicted has those of all.
+    #[test]
+    fn conditions_of_a_flight() {
+        let of_all = MeanConditions {
+            pressure_altitude_m: 11_000.0,
+            mach: 0.8,
+            static_air_temperature_k: 220.0,
+            mass_kg: 30_000.0,
+            segments: 7,
+            ..MeanConditions::default()
+        };
+        let found = of_all.to_monitor(&MeanConditions::default());
+        let lift = 30_000.0 / (22_632.06 * 0.64);
+        for (found, known) in found.into_iter().zip([0.8, lift, 11_000.0, 3.35, 30_000.0]) {
+            assert!((found / known - 1.0).abs() < 1e-6, "{found} {known}");
+        }
+        let none = MeanConditions::default().to_monitor(&of_all);
+        assert!(none.iter().zip(found).all(|(one, other)| one.to_bits() == other.to_bits()));
+    }
 }

@@ -72,8 +72,9 @@ pub struct MonitoredTail<'a> {
     model: &'a str,
     flights: Vec<&'a MonitoredFlight>,
     reference: MeanConditions,
+    /// Flights a year, those without a segment inside the table too; `None` over less than a month.
+    recorded_per_year: Option<f64>,
     events: Vec<&'a Event>,
-    series: Series,
     history: History,
     /// Deviations with the flights' weights; what changed is read from the normalised ones.
     before_learning: Option<(Series, Vec<f64>)>,
@@ -86,13 +87,13 @@ struct EngineSeries {
     /// The flights in which they are, by their places among all, in order.
     flights: Vec<usize>,
     /// One series for each engine.
-    of_each: Vec<(Series, History)>,
+    of_each: Vec<History>,
 }
 
 impl EngineSeries {
     /// Whether a change of an engine belongs to this event.
     fn show(&self, event: usize) -> bool {
-        let mut changes = self.of_each.iter().flat_map(|(_, history)| &history.changes);
+        let mut changes = self.of_each.iter().flat_map(|history| &history.changes);
         changes.any(|change| change.event == Some(event))
     }
 
@@ -106,7 +107,7 @@ impl EngineSeries {
 /// Engine by engine, what the flights show in which each is recorded: the others have only the flow of all together.
 fn engines_of(
     all: &[&MonitoredFlight],
-    level_percent: f64,
+    (level_percent, reference): (f64, &MeanConditions),
     events: &[&Event],
 ) -> Result<EngineSeries, SeriesError> {
     let count = all.iter().map(|flight| flight.engines.len()).max().unwrap_or(0);
@@ -116,13 +117,22 @@ fn engines_of(
     let mut of_each = Vec::with_capacity(count);
     for engine in 0..count {
         let shown = flights.iter().map(|&place| all[place].engines[engine].raised(level_percent));
-        let series = Series::new(shown.collect())?;
+        let conditions: Vec<_> =
+            flights.iter().map(|&place| all[place].conditions.to_monitor(reference)).collect();
+        let series = Series::new(shown.collect())?.under(&conditions)?;
         let bearing = |event: &&Event| (event.time, event.bearing_on_engine(engine + 1));
         let events: Vec<_> = events.iter().map(bearing).collect();
         let history = History::fit_to_events(&series, &events, &beliefs);
-        of_each.extend(history.map(|history| (series, history)));
+        of_each.extend(history);
     }
     Ok(EngineSeries { flights, of_each })
+}
+
+/// Rate of flights in order of flying. One flight more than intervals; over less than a month it is no rate.
+fn recorded_per_year(flights: &[MonitoredFlight]) -> Option<f64> {
+    const LEAST_YEARS: f64 = 1.0 / 12.0;
+    let span = years_between(flights.first()?.start, flights.last()?.start);
+    (span > LEAST_YEARS).then(|| (flights.len() as f64 - 1.0) / span)
 }
 
 impl<'a> MonitoredTail<'a> {
@@ -141,15 +151,18 @@ impl<'a> MonitoredTail<'a> {
             deviations.flights.iter().filter(|flight| flight.learnt.is_some()).collect();
         let level = deviations.level_percent;
         let learnt = flights.iter().filter_map(|flight| Some(flight.learnt?.raised(level)));
-        let series_of_all = Series::new(learnt.collect())?;
+        let reference = deviations.reference;
+        let conditions: Vec<_> =
+            flights.iter().map(|flight| flight.conditions.to_monitor(&reference)).collect();
+        let series = Series::new(learnt.collect())?.under(&conditions)?;
         // First engine by engine: what one of them shows of its own is no wash of the airframe.
-        let engines = engines_of(&flights, level, &events)?;
+        let engines = engines_of(&flights, (level, &reference), &events)?;
         let bearing = |(place, event): (usize, &&Event)| {
             let is_shown = event.names_engines() && engines.show(place);
             (event.time, if is_shown { Bearing::Likely } else { Bearing::Possible })
         };
         let bearings: Vec<_> = events.iter().enumerate().map(bearing).collect();
-        let Some(history) = History::fit_to_events(&series_of_all, &bearings, &beliefs) else {
+        let Some(history) = History::fit_to_events(&series, &bearings, &beliefs) else {
             return Ok(None);
         };
         let known: Option<Vec<FlightDeviation>> =
@@ -158,15 +171,14 @@ impl<'a> MonitoredTail<'a> {
             let weights = Noise::estimate(&series).weights(&series);
             (series, weights)
         });
-        let reference = deviations.reference;
         Ok(Some(Self {
             tail,
             aircraft_type: &deviations.aircraft_type,
             model: &deviations.model,
             flights,
             reference,
+            recorded_per_year: recorded_per_year(&deviations.flights),
             events,
-            series: series_of_all,
             history,
             before_learning,
             engines,
@@ -177,11 +189,11 @@ impl<'a> MonitoredTail<'a> {
     #[must_use]
     pub fn document(&self, options: &MonitorOptions) -> TailDocument {
         let months = self.months();
-        let level = self.history.levels.last_level_percent(&self.series);
+        let level = self.history.levels.last_level_percent(self.series());
         let noise = &self.history.noise;
-        let mut changes = self.changes(None, &self.series, &self.history);
-        for (engine, (series, history)) in self.engines.of_each.iter().enumerate() {
-            changes.extend(self.changes(Some(engine + 1), series, history));
+        let mut changes = self.changes(None, &self.history);
+        for (engine, history) in self.engines.of_each.iter().enumerate() {
+            changes.extend(self.changes(Some(engine + 1), history));
         }
         let date = |flight: Option<&&MonitoredFlight>| {
             flight.map_or_else(String::new, |flight| flight.start.to_string())
@@ -194,7 +206,7 @@ impl<'a> MonitoredTail<'a> {
             to: date(self.flights.last()),
             reference: self.reference,
             deviation_percent: level.into(),
-            before_learning_percent: self.before_learning_mean(0..self.series.len()),
+            before_learning_percent: self.before_learning_mean(0..self.flights.len()),
             trend_percent_per_year: self.history.levels.trend_percent_per_year().into(),
             within_flight_percent: noise.within_flight_percent,
             between_flights_percent: noise.between_flights_percent,
@@ -215,7 +227,7 @@ impl<'a> MonitoredTail<'a> {
     /// The rules that fire, in the order of the rules.
     #[must_use]
     pub fn alerts(&self, options: &MonitorOptions) -> Vec<AlertDocument> {
-        let alerts = options.rules.iter().flat_map(|rule| rule.apply(&self.series, &self.history));
+        let alerts = options.rules.iter().flat_map(|rule| rule.apply(self.series(), &self.history));
         alerts
             .map(|alert| AlertDocument {
                 tail: self.tail.to_owned(),
@@ -231,6 +243,11 @@ impl<'a> MonitoredTail<'a> {
                 no_likely_cause: None,
             })
             .collect()
+    }
+
+    /// What its flights would have shown at their mean conditions.
+    const fn series(&self) -> &Series {
+        &self.history.at_mean_conditions
     }
 
     fn before_learning_mean(&self, flights: Range<usize>) -> Option<Figure> {
@@ -249,18 +266,19 @@ impl<'a> MonitoredTail<'a> {
     fn months(&self) -> Vec<MonthDocument> {
         let mut factors: Vec<(Month, f64)> = Vec::new();
         let mut documents = Vec::new();
-        for (month, flights) in months(&self.series) {
-            let Some(mean) = self.history.mean_percent(&self.series, flights.clone()) else {
+        for (month, flights) in months(self.series()) {
+            let Some(mean) = self.history.mean_percent(self.series(), flights.clone()) else {
                 continue;
             };
             let deviation_percent = Figure::from(mean);
             let monitored = deviation_percent.map(airbus::monitored_fuel_factor_percent);
             factors.push((month, monitored.value));
             let recorded = self.engines.range(&flights);
-            let engines = self.engines.of_each.iter().filter_map(|(series, history)| {
+            let engines = self.engines.of_each.iter().filter_map(|history| {
+                let series = &history.at_mean_conditions;
                 history.mean_percent(series, recorded.clone()).map(Figure::from)
             });
-            let segments = self.series.flights()[flights.clone()].iter();
+            let segments = self.series().flights()[flights.clone()].iter();
             documents.push(MonthDocument {
                 month: month.to_string(),
                 flights: flights.len(),
@@ -290,7 +308,7 @@ impl<'a> MonitoredTail<'a> {
         options: &MonitorOptions,
     ) -> AirbusTerms {
         let each: Vec<f64> = self
-            .series
+            .series()
             .flights()
             .iter()
             .map(|flight| airbus::specific_range_deviation_percent(flight.deviation_percent()))
@@ -317,13 +335,7 @@ impl<'a> MonitoredTail<'a> {
     fn cost(&self, level: Estimate, options: &MonitorOptions) -> CostDocument {
         let fuel: f64 = self.flights.iter().map(|flight| flight.cruise_fuel_kg).sum();
         let flights = self.flights.len() as f64;
-        let span = match (self.flights.first(), self.flights.last()) {
-            (Some(first), Some(last)) => years_between(first.start, last.start),
-            _ => 0.0,
-        };
-        // One flight more than intervals; over less than a month it is no rate.
-        let recorded = (span > 1.0 / 12.0).then(|| (flights - 1.0) / span);
-        let flights_per_year = options.cost.flights_per_year.or(recorded);
+        let flights_per_year = options.cost.flights_per_year.or(self.recorded_per_year);
         let cost = Cost::new(
             level.value,
             fuel / flights.max(1.0),
@@ -339,13 +351,9 @@ impl<'a> MonitoredTail<'a> {
         }
     }
 
-    fn changes(
-        &self,
-        engine: Option<usize>,
-        series: &Series,
-        history: &History,
-    ) -> Vec<ChangeDocument> {
-        let start = |flight: usize| series.flights()[flight].time().to_string();
+    fn changes(&self, engine: Option<usize>, history: &History) -> Vec<ChangeDocument> {
+        let flights = history.at_mean_conditions.flights();
+        let start = |flight: usize| flights[flight].time().to_string();
         let kind = |event: usize| self.events[event].kind.clone();
         let document = |change: &Change| {
             let near = change.event.into_iter().chain(change.other_events.iter().copied());
@@ -394,10 +402,10 @@ impl<'a> MonitoredTail<'a> {
 
     fn flight(&self, index: usize) -> FlightDocument {
         let flight = self.flights[index];
-        let shown = &self.series.flights()[index];
+        let shown = &self.series().flights()[index];
         let percent = shown.deviation_percent();
         let variance = self.history.noise.flight_variance_percent2(shown.segments());
-        let years = self.series.years(flight.start);
+        let years = self.series().years(flight.start);
         let of = |deviation: Option<FlightDeviation>| deviation.map(|d| d.deviation_percent());
         let recorded = self.engines.range(&(index..index + 1));
         FlightDocument {
@@ -416,7 +424,7 @@ impl<'a> MonitoredTail<'a> {
                 .engines
                 .of_each
                 .iter()
-                .flat_map(|(series, _)| &series.flights()[recorded.clone()])
+                .flat_map(|history| &history.at_mean_conditions.flights()[recorded.clone()])
                 .map(FlightDeviation::deviation_percent)
                 .collect(),
             excess_fuel_kg: excess_fuel_kg(flight.cruise_fuel_kg, percent),

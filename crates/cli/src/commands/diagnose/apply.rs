@@ -129,6 +129,15 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis, outside: Outside) -> Choice 
             joined(&found.class, ", ")
         ));
     }
+    let open = found.beside.iter().find(|beside| beside.class.len() > 1);
+    if let Some(beside) = open {
+        return Choice::Refused(format!(
+            "tail {}: nothing applied, together with {} these flights cannot distinguish {}; name both with --effects",
+            group.name,
+            joined(&found.effects[..1], ""),
+            joined(&beside.class, ", ")
+        ));
+    }
     let Some(addition) = diagnosis.addition.clone() else {
         return Choice::Refused(format!(
             "tail {}: nothing applied, no model holds exactly {}",
