@@ -6,10 +6,12 @@
 //! program or an editor changed is noticed before anybody acts on it.
 
 mod applied;
+mod differences;
 mod error;
 mod text;
 
 pub use applied::{AppliedRecord, DiagnosisRecord};
+use differences::told_against;
 pub use error::{ModelTextError, ModelValueError};
 
 use std::sync::Arc;
@@ -80,21 +82,6 @@ pub struct LawSettings {
 }
 
 impl LawSettings {
-    /// The settings that differ from others, each as the file has it: "`half_life_days: None` against `half_life_days: Some(200.0)`".
-    fn told_against(&self, others: &Self) -> String {
-        let lines = |settings: &Self| -> Vec<String> {
-            let text = ron::ser::to_string_pretty(settings, ron::ser::PrettyConfig::new());
-            let text = text.unwrap_or_default();
-            text.lines().map(|line| line.trim().trim_end_matches(',').to_owned()).collect()
-        };
-        let (own, others) = (lines(self), lines(others));
-        let only = |of: &[String], than: &[String]| {
-            let told = of.iter().filter(|line| !than.contains(line)).cloned();
-            told.collect::<Vec<_>>().join(", ")
-        };
-        format!("{} against {}", only(&own, &others), only(&others, &own))
-    }
-
     /// The settings that the laws were published with.
     pub const fn published() -> Self {
         Self {
@@ -324,14 +311,8 @@ impl ModelFile {
     /// Whether two files hold the same initial model and settings; if not, what differs and how.
     pub fn difference_of_initial(&self, other: &Self) -> Option<(&'static str, String)> {
         if self.initial.aircraft() != other.initial.aircraft() {
-            return Some((
-                "aircraft",
-                format!(
-                    "{:?} against {:?}",
-                    other.initial.aircraft().name(),
-                    self.initial.aircraft().name()
-                ),
-            ));
+            let (own, other) = (self.initial.aircraft().file(), other.initial.aircraft().file());
+            return Some(("aircraft file", told_against(other, own)));
         }
         if self.initial.effects() != other.initial.effects() {
             return Some((
@@ -350,7 +331,7 @@ impl ModelFile {
             ));
         }
         if self.settings != other.settings {
-            return Some(("setting", other.settings.told_against(&self.settings)));
+            return Some(("setting", told_against(&other.settings, &self.settings)));
         }
         None
     }

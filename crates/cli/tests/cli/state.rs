@@ -125,3 +125,36 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
         .expect(2)
         .says("was started with another initial model");
 }
+
+/// The name is that of the type, and says nothing of what differs.
+#[test]
+fn another_aircraft_file_is_refused_by_the_fields_that_differ() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[report(1)], &[]).expect(0);
+    let text = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
+    let guide = fixture("guide.csv");
+    let changed = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        let (aircraft, other) = (scratch.path().join("A.ron"), scratch.path().join("OTHER.ron"));
+        std::fs::write(&aircraft, text.replacen(from, to, 1)).unwrap();
+        let (aircraft, other) = (aircraft.to_str().unwrap(), other.to_str().unwrap());
+        let guide = guide.to_str().unwrap();
+        let words = ["init", "--aircraft", aircraft, "--guide", guide, "-o", other, "--force"];
+        crate::support::cruisefit(&words.map(std::ffi::OsStr::new)).expect(0);
+        adapt(Path::new(other), &output, &[report(2)], &[]).expect(2)
+    };
+    let said = "was started with another aircraft file: ";
+    changed("0.657", "0.66").says(&format!(
+        "{said}tsfc.static_lb_per_lbf_h: 0.657 against tsfc.static_lb_per_lbf_h: 0.66"
+    ));
+    changed("(0.50, 0.95, 0.05)", "(0.50, 0.94, 0.04)").says(&format!(
+        "{said}table.mach: (0.5, 0.95, 0.05) against table.mach: (0.5, 0.94, 0.04)"
+    ));
+    changed("engines: 2,", "engines: 2, sensors: (mach: 0.002), drag_divergence_mach: 0.88,").says(
+        &format!(
+            "{said}sensors.mach: 0.001, no drag_divergence_mach against drag_divergence_mach: 0.88, sensors.mach: 0.002"
+        ),
+    );
+}
