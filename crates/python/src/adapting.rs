@@ -185,7 +185,7 @@ fn adapt_all(
     caller: &Caller,
 ) -> Result<Adapted, Failure> {
     let mut reports = Reports { refused: flights.reading.refused.clone(), ..Reports::default() };
-    let mut starts = Starts::new(how.law, &flights.criteria);
+    let mut starts = Starts::new(how.law, &flights.criteria, how.remainder);
     let mut by_tail: BTreeMap<String, ReportsByModel<'_, FlightRead>> = BTreeMap::new();
     for flight in &flights.reading.flights {
         let tail = &flight.reduced.identity.tail;
@@ -242,6 +242,11 @@ fn adapt_all(
 fn check_begun_alike(tail: &str, known: &Tail, start: &Start<'_>) -> Result<(), Failure> {
     if known.begun == start.begun {
         return Ok(());
+    }
+    if start.learns_more_than(&known.begun) {
+        return Err(Failure::input(format!(
+            "tail {tail} was started with another setting: the table alone was learnt, and more would be now; pass remainder=False"
+        )));
     }
     match start.difference(tail, &known.result.model).map_err(Failure::input)? {
         None => Ok(()),

@@ -10,7 +10,7 @@ mod tail;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pipeline::adaptation::{LawAsked, Start, Starts};
+use pipeline::adaptation::{LawAsked, RemainderChoice, Start, Starts};
 use pipeline::distinct::warn_of_copies;
 use pipeline::file_names::page_file_of_tail;
 use pipeline::model_file::ModelFile;
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
     let mut folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
     results::check_own(&folder)?;
-    let mut starts = Starts::new(law, &arguments.reports.criteria.name);
+    let mut starts = Starts::new(law, &arguments.reports.criteria.name, remainder_of(arguments));
     let tails = choose(by_model, &mut starts, &folder, &mut refused);
     let tails = begun_alike(tails, arguments, &folder, &mut refused)?;
     let mut all: BTreeSet<String> = folder.tails();
@@ -183,6 +183,14 @@ fn begun_alike<'a>(
     let goes_on = alike.keys().any(|tail| folder.holds(tail));
     if !goes_on && let Some(new) = alike.values().next() {
         // What all tails of a folder have in common is asked of the others.
+        let states = || folder.tails().into_iter().filter_map(|tail| folder.state_of(&tail));
+        if states().any(|state| new.0.learns_more_than(&state.begun))
+            && states().all(|state| state.begun != new.0.begun)
+        {
+            let folder = show(&arguments.output);
+            let difference = TABLE_ALONE.to_owned();
+            return Err(Failure::BegunOtherwise { folder, what: "setting", difference });
+        }
         let known = folder.tails().into_iter().find_map(|tail| folder.load(&tail).ok());
         if let Some((what, difference)) =
             known.and_then(|one| new.0.difference_of_folder(&one.model))
@@ -231,6 +239,13 @@ fn learn_all(
     outcomes
 }
 
+/// What was begun with --no-remainder is not what this run would make of it.
+const TABLE_ALONE: &str = "the table alone was learnt, and more would be now; add --no-remainder";
+
+const fn remainder_of(arguments: &AdaptArgs) -> RemainderChoice {
+    if arguments.no_remainder { RemainderChoice::Leave } else { RemainderChoice::Learn }
+}
+
 const fn law_of(arguments: &AdaptArgs) -> LawAsked {
     match arguments.law {
         LawName::Bayes => LawAsked::Bayes,
@@ -246,6 +261,9 @@ fn difference(
 ) -> Result<Option<Otherwise>, Failure> {
     if !folder.holds(tail) || folder.state_of(tail).is_some_and(|s| s.begun == start.begun) {
         return Ok(None);
+    }
+    if folder.state_of(tail).is_some_and(|state| start.learns_more_than(&state.begun)) {
+        return Ok(Some(Otherwise::Begun("setting", TABLE_ALONE.to_owned())));
     }
     // A damaged tail is refused when its flights are.
     let Ok(stored) = folder.load(tail) else { return Ok(None) };

@@ -158,3 +158,29 @@ fn another_aircraft_file_is_refused_by_the_fields_that_differ() {
         ),
     );
 }
+
+/// A nightly line that lost the option would change what every prediction means.
+#[test]
+fn a_folder_of_the_table_alone_goes_on_so() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = (initial_model(scratch.path()), scratch.path().join("out"));
+    adapt(&model, &output, &[report(1), report(2)], &["--no-remainder"]).expect(0);
+    let before = bytes_below(&output);
+    let said = "was started with another setting: the table alone was learnt, and more would be now; add --no-remainder";
+    adapt(&model, &output, &[report(3)], &[]).expect(2).says(said);
+    // A tail that is new has no setting of its own.
+    let other_tail = changed_copy(scratch.path(), 4, "SIM-01", "SIM-02");
+    adapt(&model, &output, std::slice::from_ref(&other_tail), &[]).expect(2).says(said);
+    assert_eq!(bytes_below(&output), before);
+    adapt(&model, &output, &[report(3), other_tail], &["--no-remainder"]).expect(0);
+    let flights = ["--tail", "SIM-01", "--flight", "0003"];
+    let words = [&["forget", output.to_str().unwrap()][..], &flights].concat();
+    let words: Vec<&std::ffi::OsStr> = words.into_iter().map(std::ffi::OsStr::new).collect();
+    crate::support::cruisefit(&words).expect(0);
+    adapt(&model, &output, &[report(3)], &[]).expect(2).says(said);
+    adapt(&model, &output, &[report(3)], &["--restart"]).expect(0);
+    // Law paper has no remainder: the option makes no difference to it.
+    let paper = scratch.path().join("paper");
+    adapt(&model, &paper, &[report(1)], &["--law", "paper", "--no-remainder"]).expect(0);
+    adapt(&model, &paper, &[report(2)], &["--law", "paper"]).expect(0);
+}

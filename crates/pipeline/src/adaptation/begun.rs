@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::RemainderChoice;
 use crate::checksum::sha256;
 use crate::learning::{self, LawChoice, LearningError};
 use crate::model_file::{ModelFile, PaperSettings};
@@ -27,12 +28,21 @@ pub struct Start<'a> {
     criteria: &'a str,
     /// SHA-256 of all of it, by which a tail is known to have been begun alike.
     pub begun: String,
+    /// The same of a tail that is to learn its table alone, where this one is to learn more.
+    with_table_alone: Option<String>,
 }
 
 impl Start<'_> {
     /// The law by which tails learn.
     pub(crate) const fn law(&self) -> &LawChoice {
         &self.law
+    }
+
+    /// Whether a tail that was begun with this (its SHA-256) was to learn its table alone, and would now learn more: what every
+    /// prediction of it means would change.
+    #[must_use]
+    pub fn learns_more_than(&self, begun: &str) -> bool {
+        self.with_table_alone.as_deref() == Some(begun)
     }
 
     /// A model of a tail that has learnt nothing.
@@ -90,14 +100,23 @@ impl Start<'_> {
 pub struct Starts<'a> {
     law: LawAsked,
     criteria: &'a str,
-    /// SHA-256 of what the tails of a model begin with, by the model's place in memory.
-    begun: BTreeMap<*const ModelFile, String>,
+    remainder: RemainderChoice,
+    /// What the tails of a model begin with, by the model's place in memory.
+    begun: BTreeMap<*const ModelFile, Begun>,
+}
+
+/// SHA-256 of what a tail begins with.
+#[derive(Clone, Debug)]
+struct Begun {
+    asked: String,
+    /// Where more than the table is to be learnt: of one that is to learn the table alone.
+    with_table_alone: Option<String>,
 }
 
 impl<'a> Starts<'a> {
     /// By this law and these trim criteria (the name of a preset).
-    pub const fn new(law: LawAsked, criteria: &'a str) -> Self {
-        Self { law, criteria, begun: BTreeMap::new() }
+    pub const fn new(law: LawAsked, criteria: &'a str, remainder: RemainderChoice) -> Self {
+        Self { law, criteria, remainder, begun: BTreeMap::new() }
     }
 
     /// What the reports of a model begin with.
@@ -109,23 +128,37 @@ impl<'a> Starts<'a> {
                     .unwrap_or(model.settings.paper.threshold_percent),
             }),
         };
-        let criteria = self.criteria;
-        let begun = self
+        let (criteria, remainder) = (self.criteria, self.remainder);
+        let Begun { asked, with_table_alone } = self
             .begun
             .entry(std::ptr::from_ref(model))
-            .or_insert_with(|| begun_of(model, &law, criteria))
+            .or_insert_with(|| Begun::of(model, &law, criteria, remainder))
             .clone();
-        Start { model, law, criteria, begun }
+        Start { model, law, criteria, begun: asked, with_table_alone }
     }
 }
 
-fn begun_of(model: &ModelFile, law: &LawChoice, criteria: &str) -> String {
-    let initial = ModelFile { learnt: None, ..model.clone() };
-    // Where the text cannot be made the model cannot be stored either, which is reported there.
-    let initial = initial.to_text().unwrap_or_default();
-    let law = match law {
-        LawChoice::Paper(settings) => format!("paper {}", settings.threshold_percent),
-        LawChoice::Bayes(_) => "bayes".to_owned(),
-    };
-    sha256(format!("{initial}\n{law}\n{criteria}\n").as_bytes())
+impl Begun {
+    fn of(model: &ModelFile, law: &LawChoice, criteria: &str, remainder: RemainderChoice) -> Self {
+        let initial = ModelFile { learnt: None, ..model.clone() };
+        // Where the text cannot be made the model cannot be stored either, which is reported there.
+        let initial = initial.to_text().unwrap_or_default();
+        let sum = |law: &str| sha256(format!("{initial}\n{law}\n{criteria}\n").as_bytes());
+        match (law, remainder) {
+            // It has no remainder.
+            (LawChoice::Paper(settings), _) => Self {
+                asked: sum(&format!("paper {}", settings.threshold_percent)),
+                with_table_alone: None,
+            },
+            (LawChoice::Bayes(_), RemainderChoice::Learn) => {
+                Self { asked: sum("bayes"), with_table_alone: Some(sum(TABLE_ALONE)) }
+            }
+            (LawChoice::Bayes(_), RemainderChoice::Leave) => {
+                Self { asked: sum(TABLE_ALONE), with_table_alone: None }
+            }
+        }
+    }
 }
+
+/// Law `bayes` that learns the table alone, in what a tail was begun with.
+const TABLE_ALONE: &str = "bayes, the table alone";

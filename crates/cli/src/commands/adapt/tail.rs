@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 use flight::Segment;
 use pipeline::adaptation::{
-    self, Contradictions, OlderFlights, RemainderChoice, Sorting, Start, StoredTail,
-    refuse_impossible, result_of,
+    self, Contradictions, OlderFlights, Sorting, Start, StoredTail, refuse_impossible, result_of,
 };
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
@@ -241,14 +240,15 @@ impl Run<'_> {
         stored: Option<StoredTail>,
         mut outcome: TailOutcome,
     ) -> Result<TailOutcome, Failure> {
-        let remainder = if self.arguments.no_remainder {
-            RemainderChoice::Leave
-        } else {
-            RemainderChoice::Learn
-        };
         let new = sorting.new.iter().filter_map(|(flight, _)| NewFlight::of(flight)).collect();
-        let found = adaptation::learn(start, &outcome.tail, sorting, stored, remainder)
-            .map_err(|error| not_correctable(&error))?;
+        let found = adaptation::learn(
+            start,
+            &outcome.tail,
+            sorting,
+            stored,
+            super::remainder_of(self.arguments),
+        )
+        .map_err(|error| not_correctable(&error))?;
         outcome.refused = found.refused;
         match found.learnt {
             Some(learnt) => {
