@@ -17,6 +17,7 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
         samples: 90,
         segments: errors_percent.len(),
         outside_table: 0,
+        not_evaluated: Vec::new(),
         informed_nodes: None,
         refits: None,
         fuel_flow_error_percent: ErrorsSummary {

@@ -11,6 +11,7 @@ use lut::{Outside, Table};
 
 use crate::learning::{LearningCurve, curve_of};
 use crate::model_file::ModelFile;
+use crate::not_evaluated;
 use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
 use crate::statistics::{ErrorStatistics, NORMAL_95, mean_half_width95_by_flight};
@@ -122,8 +123,13 @@ impl TailResult {
         for flight in &flights {
             flight.add_notes(&mut notes);
         }
+        // Those without a segment are known here, too.
+        let not_evaluated = not_evaluated::of_flights(&flights);
         let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
-        Self::as_given(TailData { tail, model, segments, counts, notes, curve: None }, predicts)
+        let data = TailData { tail, model, segments, counts, notes, curve: None };
+        let mut result = Self::as_given(data, predicts);
+        result.summary.not_evaluated = not_evaluated;
+        result
     }
 
     fn put_together(
@@ -288,6 +294,7 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
         samples: data.counts.samples,
         segments: data.segments.len(),
         outside_table: errors(before).iter().filter(|error| error.is_none()).count(),
+        not_evaluated: not_evaluated::of_segments(&data.segments),
         informed_nodes: None,
         refits: None,
         interval95_coverage: None,

@@ -74,6 +74,7 @@ pub mod model_file;
 pub mod model_table;
 pub mod models;
 pub mod monitoring;
+pub mod not_evaluated;
 pub mod optimum;
 pub mod plausibility;
 pub mod prediction;

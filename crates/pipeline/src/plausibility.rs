@@ -6,6 +6,7 @@ use crate::check::{CheckDocument, DataFinding, FlightCheck, book, check_flights}
 use crate::evaluation::evaluate;
 use crate::model_file::ModelFile;
 use crate::models::Models;
+use crate::not_evaluated;
 use crate::summary::{RefusedSummary, ReportsSummary};
 use effects::ExtendedModel;
 use flight::{Segment, Severity};
@@ -40,6 +41,7 @@ pub fn check_document(
     now_s: Option<f64>,
 ) -> CheckDocument {
     let mut findings = findings(&reading.flights, now_s);
+    findings.extend(not_evaluated::findings(&reading.flights));
     if let Some(models) = models {
         let of_each = reading.flights.iter().zip(models.of_each(&reading.flights));
         let with_books =

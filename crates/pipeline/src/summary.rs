@@ -4,6 +4,7 @@ use core::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
+use crate::not_evaluated::{self, NotEvaluated};
 use crate::statistics::ErrorStatistics;
 
 /// Schema of [`Summary`].
@@ -64,6 +65,10 @@ pub struct TailSummary {
     pub segments: usize,
     /// Segments that the grid refused.
     pub outside_table: usize,
+    /// Trim criteria that were not evaluated, because what they judge was not recorded; absent where all were. `adapt`: of flights
+    /// with segments.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_evaluated: Vec<NotEvaluated>,
     /// Share of nodes ever adapted; absent where nothing is adapted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub informed_nodes: Option<f64>,
@@ -144,6 +149,9 @@ impl Summary {
                  of the mean error of such flights.\n",
             );
         }
+        let lists = self.tails.iter().map(|tail| tail.not_evaluated.as_slice());
+        let flights = self.tails.iter().map(|tail| tail.flights).sum();
+        text.push_str(&not_evaluated::line(&not_evaluated::together(lists), flights));
         let _ = writeln!(
             text,
             "{} read, {} already known, {} refused.",

@@ -11,6 +11,7 @@ use crate::failure::{Failure, show};
 use crate::progress::Progress;
 use crate::reading::FlightRead;
 use crate::terminal;
+use pipeline::not_evaluated;
 use pipeline::segments_table::{self, SegmentRow};
 use pipeline::summary::{NO_SEGMENT, aligned, counted};
 
@@ -31,6 +32,12 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
         String::new()
     };
     let flights = reading.flights.len();
+    // The explanation has it in its table.
+    let not_evaluated = if arguments.explain {
+        String::new()
+    } else {
+        not_evaluated::line(&not_evaluated::of_tally(&tally_of(&reading.flights)), flights)
+    };
     let rows: Vec<SegmentRow> = reading
         .flights
         .into_iter()
@@ -50,12 +57,16 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
             counted(flights, "flight"),
             show(path)
         );
+        text.push_str(&not_evaluated);
         if rows.is_empty() {
             text.push_str(NO_SEGMENT);
         }
     } else {
         // Standard output carries the table, so the explanation goes to standard error.
         terminal::tell(&explained);
+        if !not_evaluated.is_empty() {
+            terminal::tell(&not_evaluated);
+        }
         if json.is_none() {
             columns::write(&table, None)?;
         }

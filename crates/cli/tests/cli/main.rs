@@ -27,6 +27,7 @@ mod hostile_system;
 mod json_schema;
 mod merging;
 mod monitor;
+mod not_evaluated;
 mod optimum;
 mod pages;
 mod parquet_points;
