@@ -79,6 +79,7 @@ fn against_truth(folder: &Path) -> [f64; 3] {
 fn verdict(folder: &Path) -> serde_json::Value {
     let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    crate::json_schema::assert_held("diagnosis-1.json", &document);
     document["diagnoses"][0]["verdict"].clone()
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::json_schema::assert_held;
 use crate::support::{Ran, adapt, bytes_below, cruisefit, fixture, initial_model};
 
 /// Adapts to one good report and one bad one: the bad one is refused with this message, the good one is learnt.
@@ -15,6 +16,7 @@ fn refused_beside_a_good_one(name: &str, bytes: &[u8], words: &str) {
     ran.says(&format!("refused: {}", bad.display())).says(words);
     let summary: serde_json::Value =
         serde_json::from_slice(&std::fs::read(output.join("summary.json")).unwrap()).unwrap();
+    assert_held("summary-1.json", &summary);
     assert_eq!(summary["reports"]["read"], 1);
     assert_eq!(summary["reports"]["refused"][0]["path"], bad.display().to_string());
     assert_eq!(summary["tails"][0]["flights"], 1);

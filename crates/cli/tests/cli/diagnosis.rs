@@ -50,7 +50,7 @@ fn too_little_data_gets_no_name() {
     let text = std::fs::read_to_string(output.join("diagnosis.json")).unwrap();
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(document["schema"], "cruisefit.diagnosis/1");
+    crate::json_schema::assert_held("diagnosis-1.json", &document);
     let diagnosis = &document["diagnoses"][0];
     assert_eq!(diagnosis["tail"], "SIM-01");
     assert_eq!(diagnosis["verdict"]["kind"], "insufficient_data");

@@ -49,6 +49,7 @@ fn verdict(
     cruisefit(&words).expect(0);
     let document = std::fs::read(output.join("diagnosis.json")).unwrap();
     let document: serde_json::Value = serde_json::from_slice(&document).unwrap();
+    crate::json_schema::assert_held("diagnosis-1.json", &document);
     document["diagnoses"][0]["verdict"].clone()
 }
 

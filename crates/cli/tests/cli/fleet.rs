@@ -81,6 +81,7 @@ fn what_all_share_is_the_models_and_what_one_has_is_its_own() {
 
     let document = std::fs::read_to_string(at("found/diagnosis.json")).unwrap();
     let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    crate::json_schema::assert_held("diagnosis-1.json", &document);
     let fleet = &document["fleets"][0];
     assert_eq!(fleet["model_of"], "type");
     assert_eq!(fleet["tails"].as_array().unwrap().len(), 6);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
+use crate::json_schema::assert_held;
 use crate::support::{Ran, adapt, bytes_below, cruisefit, fixture, initial_model};
 
 fn report(flight: u32) -> PathBuf {
@@ -31,7 +32,10 @@ fn flights_of(output: &Path) -> Vec<String> {
 }
 
 fn summary(output: &Path) -> serde_json::Value {
-    serde_json::from_slice(&std::fs::read(output.join("summary.json")).unwrap()).unwrap()
+    let bytes = std::fs::read(output.join("summary.json")).unwrap();
+    let summary = serde_json::from_slice(&bytes).unwrap();
+    assert_held("summary-1.json", &summary);
+    summary
 }
 
 fn same_tail(one: &Path, other: &Path) {

@@ -3,6 +3,14 @@
 
 use serde_json::Value;
 
+/// Asserts that a document is as the file of this name in `docs/schemas` says.
+pub(crate) fn assert_held(schema: &str, document: &Value) {
+    let path = crate::support::root().join("docs/schemas").join(schema);
+    let schema: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    let found = violations(&schema, document);
+    assert!(found.is_empty(), "{found:#?}");
+}
+
 /// Every place in which `value` is not as `schema` says.
 pub(crate) fn violations(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
@@ -14,6 +22,14 @@ fn hold(schema: &Value, value: &Value, place: &str, found: &mut Vec<String>) {
     for (keyword, expected) in schema.as_object().into_iter().flatten() {
         let is_met = match keyword.as_str() {
             "$schema" | "title" | "description" | "properties" => true,
+            "additionalProperties" if expected.is_object() => {
+                for (name, other) in value.as_object().into_iter().flatten() {
+                    if schema["properties"].get(name).is_none() {
+                        hold(expected, other, &format!("{place}.{name}"), found);
+                    }
+                }
+                true
+            }
             "additionalProperties" => *expected == Value::Bool(false) && no_other(schema, value),
             "const" => value == expected,
             "enum" => expected.as_array().unwrap().contains(value),
@@ -25,7 +41,7 @@ fn hold(schema: &Value, value: &Value, place: &str, found: &mut Vec<String>) {
                 .as_array()
                 .unwrap()
                 .iter()
-                .all(|name| value.get(name.as_str().unwrap()).is_some()),
+                .all(|name| !value.is_object() || value.get(name.as_str().unwrap()).is_some()),
             "items" => {
                 for (index, item) in value.as_array().into_iter().flatten().enumerate() {
                     hold(expected, item, &format!("{place}[{index}]"), found);
@@ -75,6 +91,9 @@ fn what_is_wrong_is_found() {
     assert_eq!(of(r#"{"a": [1, "x"]}"#), 0);
     assert_eq!(of(r#"{"a": [2]}"#), 1);
     assert_eq!(of(r#"{"b": 1}"#), 2);
-    assert_eq!(of("[]"), 2);
+    // Of what is no object nothing is required but to be one.
+    assert_eq!(of("[]"), 1);
+    let counts = serde_json::json!({"additionalProperties": {"type": "integer"}});
+    assert_eq!(violations(&counts, &serde_json::json!({"a": 1, "b": "x", "c": null})).len(), 2);
     assert_eq!(violations(&serde_json::json!({"maximum": 3}), &Value::from(4)).len(), 1);
 }

@@ -4,12 +4,17 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use crate::json_schema::assert_held;
 use crate::support::{adapt, cruisefit, fixture, initial_model};
 
 const LINE: &str = "Trim criteria not evaluated for want of data: N2, DRIFT, ROLL in ";
 
 fn document(path: &Path) -> Value {
-    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+    let document: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    let schema =
+        if document["schema"] == "cruisefit.check/1" { "check-1.json" } else { "summary-1.json" };
+    assert_held(schema, &document);
+    document
 }
 
 /// A report without rotor speeds, drift and roll angle.

@@ -89,6 +89,7 @@ fn check_gaps(diagnosis: &Path) {
         columns["gap_before_percent"].iter().map(|cell| cell.parse().unwrap()).collect();
     let json = fs::read_to_string(diagnosis.join("diagnosis.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    crate::json_schema::assert_held("diagnosis-1.json", &json);
     let one = &json["diagnoses"][0];
     assert_eq!(Some(gaps.len() as u64), one["segments"].as_u64());
     let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;

@@ -126,6 +126,7 @@ fn residuals_state_how_far_the_whole_model_expects_to_err() {
     let inside = errors.iter().zip(&halves).filter(|(error, half)| error.abs() <= **half).count();
     let summary: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    crate::json_schema::assert_held("summary-1.json", &summary);
     let stated = summary["tails"][0]["interval95_coverage"].as_f64().unwrap();
     assert!((inside as f64 / errors.len() as f64 - stated).abs() < 1e-9, "{inside} {stated}");
     for (flight, of_flight) in columns["flight"].iter().zip(&flights) {

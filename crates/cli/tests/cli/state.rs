@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::json_schema::assert_held;
 use crate::support::{adapt, bytes_below, fixture, initial_model};
 
 fn report(flight: u32) -> PathBuf {
@@ -17,7 +18,10 @@ fn changed_copy(folder: &Path, flight: u32, from: &str, to: &str) -> PathBuf {
 }
 
 fn summary(output: &Path) -> serde_json::Value {
-    serde_json::from_slice(&std::fs::read(output.join("summary.json")).unwrap()).unwrap()
+    let bytes = std::fs::read(output.join("summary.json")).unwrap();
+    let summary = serde_json::from_slice(&bytes).unwrap();
+    assert_held("summary-1.json", &summary);
+    summary
 }
 
 #[test]
