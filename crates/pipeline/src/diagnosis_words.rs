@@ -21,6 +21,7 @@ pub use consequence::follows;
 pub use form::{applied_form_words, form_name, form_parameters, form_words};
 pub(crate) use limits::{LEAST_TOLD, OTHERS_TOLD, SEPARATIONS_TOLD, TOLD_APART};
 pub use limits::{NO_CAUSE_STANDS_OUT, is_open, stands_out};
+pub(crate) use region::instant as instant_words;
 pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What a verdict of no gap means: noise, or more than noise that is no effect.

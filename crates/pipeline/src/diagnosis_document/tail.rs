@@ -134,7 +134,12 @@ pub struct CauseRecord {
     pub closure_ci95: Option<[f64; 2]>,
     /// Hidden parameters in words ("from 2019-06-02 on fuel flow"); empty for most effects.
     pub hidden: String,
-    /// With `--fleet` whose it is: `type`, `tail` or `sensor`; absent where the fleet has no such finding.
+    /// The instant from which it holds, RFC 3339: of a step its date, of a history that of its last fall, or of its beginning
+    /// where it has none. Absent for what has no date.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since: Option<String>,
+    /// With `--fleet` whose it is, were it this effect: `type`, `tail` or `sensor`. Absent where the fleet has no finding whose
+    /// class it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<String>,
 }

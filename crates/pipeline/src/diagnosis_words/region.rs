@@ -97,7 +97,7 @@ fn date_words(from: Option<Edge>, to: Option<Edge>) -> String {
 }
 
 /// An instant, s since 1970, as RFC 3339; empty beyond the calendar.
-pub(super) fn instant(seconds: f64) -> String {
+pub(crate) fn instant(seconds: f64) -> String {
     #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
     Timestamp::from_second(seconds as i64).map_or_else(|_| String::new(), |t| t.to_string())
 }

@@ -91,6 +91,10 @@ class Cause:
         rms_after_percent: Root mean square of the gap with it in the model, on flights to which it was not fitted.
         closure: Share of the explainable gap that it closes on those flights.
         closure_ci95: 95 % interval of the closure.
+        since: The instant from which it holds, as ``2019-06-01T00:00:00Z``: of a step its date, of a history that of its last
+            fall, or of its beginning where it has none; none for what has no date.
+        level: With ``fleet=True`` whose it is, were it this effect: ``type``, ``tail`` or ``sensor``; none where the fleet has
+            no finding whose class it belongs to.
     """
 
     effect: str
@@ -100,6 +104,8 @@ class Cause:
     rms_after_percent: float | None = None
     closure: float | None = None
     closure_ci95: Interval | None = None
+    since: str | None = None
+    level: str | None = None
 
 
 @dataclass(frozen=True)

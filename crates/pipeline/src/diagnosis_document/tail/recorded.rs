@@ -6,7 +6,7 @@ use diagnose::{
     Beside, Cause, Closure, Contribution, Detectable, Diagnosis, FoundForm, Gap, HeldOutFlight,
     OutsideLibrary, Region, Separation, Slice, Verdict,
 };
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 use super::{
     BesideRecord, CauseRecord, ContributionRecord, DetectableRecord, FormRecord, GapRecord,
@@ -17,7 +17,7 @@ use crate::addition_record::AdditionRecord;
 use crate::diagnosed_tail::DiagnosedTail;
 use crate::diagnosis_words::{
     ENGINE_BOUNDS, acts_on_words, advice, bounds_name, form_name, form_parameters, form_words,
-    left_out_words, measurement_words, region_words, variable_words,
+    instant_words, left_out_words, measurement_words, region_words, variable_words,
 };
 impl From<&FoundForm> for FormRecord {
     fn from(found: &FoundForm) -> Self {
@@ -164,9 +164,23 @@ impl From<&Cause> for CauseRecord {
             closure: cause.closure.map(|closure| closure.share),
             closure_ci95: cause.closure.map(|closure| closure.ci95),
             hidden: cause.hidden.to_string(),
+            since: since(cause.hidden),
             level: None,
         }
     }
+}
+
+/// The date of what has one: of a history the last fall, which the flights dated, and not the beginning, which mostly is
+/// where the model's knowledge ends.
+fn since(hidden: HiddenParameter) -> Option<String> {
+    let since_s = match hidden {
+        HiddenParameter::Step { from_s, .. } => from_s,
+        HiddenParameter::History(history) => history.falls_s().last().unwrap_or(history.since_s()),
+        HiddenParameter::None
+        | HiddenParameter::DragDivergenceMach(_)
+        | HiddenParameter::Throttle { .. } => return None,
+    };
+    Some(instant_words(since_s)).filter(|instant| !instant.is_empty())
 }
 
 impl From<&Contribution> for ContributionRecord {
@@ -267,4 +281,50 @@ impl From<&OutsideLibrary> for OutsideLibraryRecord {
 
 fn names(effects: &[EffectId]) -> Vec<String> {
     effects.iter().map(ToString::to_string).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use flight::effect::{History, StepTarget, ThrottleArgument};
+
+    use super::*;
+
+    /// 2019-06-01T00:00Z is 1 559 347 200 s since 1970 (`date -u -d 2019-06-01 +%s`).
+    #[test]
+    fn what_has_a_date_states_it() {
+        const JUNE_S: f64 = 1_559_347_200.0;
+        let step = HiddenParameter::Step { from_s: JUNE_S, target: StepTarget::Drag };
+        assert_eq!(since(step).as_deref(), Some("2019-06-01T00:00:00Z"));
+        let history =
+            |falls_s: &[f64]| HiddenParameter::History(History::new(JUNE_S, 0.5, falls_s).unwrap());
+        assert_eq!(since(history(&[])).as_deref(), Some("2019-06-01T00:00:00Z"));
+        let falls_s = [JUNE_S + 7200.0, JUNE_S + 3600.0];
+        assert_eq!(since(history(&falls_s)).as_deref(), Some("2019-06-01T02:00:00Z"));
+        let argument = ThrottleArgument::N2;
+        for undated in [
+            HiddenParameter::None,
+            HiddenParameter::DragDivergenceMach(0.86),
+            HiddenParameter::Throttle { pivot: 1.0, argument },
+        ] {
+            assert_eq!(since(undated), None);
+        }
+        let cause = Cause { effect: EffectId::StepChange, hidden: step, ..cause() };
+        let record = serde_json::to_value(CauseRecord::from(&cause)).unwrap();
+        assert_eq!(record["since"], "2019-06-01T00:00:00Z");
+        let record = serde_json::to_value(CauseRecord::from(&self::cause())).unwrap();
+        assert!(record.get("since").is_none(), "{record}");
+    }
+
+    fn cause() -> Cause {
+        Cause {
+            effect: EffectId::DragFactor,
+            probability: 0.9,
+            probability_flat: 0.9,
+            class: vec![EffectId::DragFactor],
+            magnitude: diagnose::Magnitude { value: 3.0, ci95: [2.0, 4.0] },
+            rms_after_percent: None,
+            closure: None,
+            hidden: HiddenParameter::None,
+        }
+    }
 }
