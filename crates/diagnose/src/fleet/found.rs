@@ -1,6 +1,6 @@
 //! What a fleet's diagnosis says, as types.
 
-use flight::effect::EffectId;
+use flight::effect::{EffectGroup, EffectId};
 
 use crate::output::Magnitude;
 
@@ -13,6 +13,17 @@ pub enum FleetLevel {
     Tail,
     /// One tail's sensors have it.
     Sensor,
+}
+
+impl FleetLevel {
+    /// Whose an effect is that one tail has.
+    #[must_use]
+    pub const fn on_tail(effect: EffectId) -> Self {
+        match effect.entry().group {
+            EffectGroup::Sensor => Self::Sensor,
+            _ => Self::Tail,
+        }
+    }
 }
 
 /// The diagnosis of all tails of a type together.

@@ -3,8 +3,6 @@
 //! Difficult: what is free on a tail, what is free in the type, and how much everything else may act are chosen in turn, each
 //! given the others, until they stay; every choice is by evidence. Probabilities come from the last turn.
 
-use flight::effect::{EffectGroup, EffectId};
-
 use crate::fleet::false_discoveries::kept;
 use crate::fleet::found::{FleetDiagnosis, FleetFinding, FleetLevel};
 use crate::fleet::frame::{FleetTail, SharedColumns};
@@ -260,7 +258,8 @@ impl Fleet {
 
     fn finding(&self, tail: Option<usize>, acting: &Acting, sizes: &Sizes) -> FleetFinding {
         let id = |effect: usize| self.effects[effect].id;
-        let level = |effect: usize| tail.map_or(FleetLevel::Type, |_| level_on_tail(id(effect)));
+        let level =
+            |effect: usize| tail.map_or(FleetLevel::Type, |_| FleetLevel::on_tail(id(effect)));
         let mut levels: Vec<FleetLevel> = Vec::new();
         for level in acting.class.iter().map(|&effect| level(effect)) {
             if !levels.contains(&level) {
@@ -300,14 +299,6 @@ fn by_size(none: f64, tails: usize) -> [f64; 3] {
     let mean = -first.ln();
     let all = 1.0 + mean + 0.5 * mean * mean;
     [1.0, mean, 0.5 * mean * mean].map(|share| share / all)
-}
-
-/// Whose an effect on a tail is.
-const fn level_on_tail(id: EffectId) -> FleetLevel {
-    match id.entry().group {
-        EffectGroup::Sensor => FleetLevel::Sensor,
-        _ => FleetLevel::Tail,
-    }
 }
 
 #[cfg(test)]
