@@ -15,12 +15,14 @@ use parquet::schema::types::{ColumnDescriptor, ColumnPath, Type};
 use pipeline::columns::{Cells, Columns};
 
 use crate::failure::Failure;
+use crate::files::is_device_or_pipe;
 use crate::files::outputs::write_result;
 
 /// Values that are encoded together.
 const VALUES_AT_ONCE: usize = 1 << 16;
 
-/// Writes to a file whose ending chooses the format, or as CSV to standard output, which `-` means too.
+/// Writes to a file whose ending chooses the format, or as CSV to standard output, which `-` means too, and to a device or pipe of
+/// another ending.
 ///
 /// # Errors
 /// An ending that is neither `.csv` nor `.parquet`, a file that would be lost, or one that cannot be written.
@@ -36,6 +38,7 @@ pub(crate) fn write(columns: &Columns, path: Option<&Path>) -> Result<(), Failur
                 to_parquet(columns, None).map_err(|error| Failure::unwritable(path, error))?;
             write_result(path, &bytes)
         }
+        _ if is_device_or_pipe(path) => write_result(path, &columns.to_csv()),
         _ => Err(Failure::BadArgument {
             argument: "--output",
             reason: format!("{} ends neither in .csv nor in .parquet", path.display()),

@@ -21,6 +21,13 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure>
     write_streamed(path, |to| to.write_all(bytes))
 }
 
+/// Whether what is at a path takes bytes as they come, and its name says nothing of what they are.
+pub(crate) fn is_device_or_pipe(path: &Path) -> bool {
+    // `/dev/stdout` may be a regular file, which whoever opened it wants to see written, not replaced.
+    let is_device = path.starts_with("/dev") || path.starts_with("/proc");
+    path.metadata().is_ok_and(|known| is_device || !(known.is_file() || known.is_dir()))
+}
+
 /// The same of what a function writes, piece by piece: for files that need not be in memory as a whole.
 ///
 /// # Errors
@@ -30,14 +37,10 @@ pub(crate) fn write_streamed(path: &Path, content: impl Fn(To<'_>) -> Done) -> R
         if path.as_os_str() == "-" {
             return content(&mut std::io::stdout());
         }
-        // `/dev/stdout` may be a regular file, which whoever opened it wants to see written, not replaced.
-        let is_device = path.starts_with("/dev") || path.starts_with("/proc");
-        let permissions = match path.metadata() {
-            Ok(known) if is_device || !(known.is_file() || known.is_dir()) => {
-                return content(&mut std::fs::OpenOptions::new().append(true).open(path)?);
-            }
-            known => known.ok().map(|known| known.permissions()),
-        };
+        if is_device_or_pipe(path) {
+            return content(&mut std::fs::OpenOptions::new().append(true).open(path)?);
+        }
+        let permissions = path.metadata().ok().map(|known| known.permissions());
         let target = behind_links(path)?;
         replace(&target, &content, permissions, Durability::Synced)
     };

@@ -13,6 +13,7 @@ use crate::args::OptimumArgs;
 use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
+use crate::files::is_device_or_pipe;
 use crate::files::outputs::write_result;
 use crate::models::read_model;
 
@@ -97,7 +98,12 @@ fn write(path: &Path, json: &str, conditions: &[ConditionOptimum]) -> Result<(),
 
 /// Before anything is computed.
 fn check_endings(paths: &[std::path::PathBuf]) -> Result<(), Failure> {
-    let wrong = paths.iter().find(|path| !matches!(ending(path), Some("csv" | "parquet" | "json")));
+    let is_known = |path: &std::path::PathBuf| {
+        matches!(ending(path), Some("csv" | "parquet" | "json"))
+            || path.as_os_str() == "-"
+            || is_device_or_pipe(path)
+    };
+    let wrong = paths.iter().find(|path| !is_known(path));
     wrong.map_or(Ok(()), |path| {
         Err(Failure::BadArgument {
             argument: "--output",

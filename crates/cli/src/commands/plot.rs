@@ -9,7 +9,7 @@ use crate::args::PlotArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::outputs::write_result;
-use crate::files::{file_stem_of_tail, read_text};
+use crate::files::{file_stem_of_tail, is_device_or_pipe, read_text};
 use crate::models::read_model;
 use diagnose::SegmentGap;
 use page::{PictureFormat, TrialConfusion};
@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
     Ok(Outcome::with_figures(format!("Written to {}\n", show(&arguments.output)), figures))
 }
 
-/// What is written: what was asked for, else what the name of the file ends in, else SVG to standard output.
+/// What is written: what was asked for, else what the name of the file ends in, else SVG to standard output, a device or a pipe.
 fn format(arguments: &PlotArgs) -> Result<PictureFormat, Failure> {
     let output = &arguments.output;
     let on_standard_output = output.as_os_str() == "-";
@@ -93,7 +93,8 @@ fn format(arguments: &PlotArgs) -> Result<PictureFormat, Failure> {
     let ending = output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let of_name = PictureFormat::from_ending(ending);
     let asked = arguments.format.as_deref().and_then(PictureFormat::from_ending);
-    let unnamed = on_standard_output.then_some(PictureFormat::Svg);
+    let is_unnamed = on_standard_output || is_device_or_pipe(output);
+    let unnamed = is_unnamed.then_some(PictureFormat::Svg);
     asked.or(of_name).or(unnamed).ok_or_else(|| Failure::BadArgument {
         argument: "--output",
         reason: format!(

@@ -522,6 +522,43 @@ fn outputs_are_written_where_a_path_leads() {
     }
 }
 
+/// A device and a pipe have no ending that chooses a format: a table is CSV there, as on standard output.
+#[cfg(unix)]
+#[test]
+fn tables_go_to_devices_and_unnamed_pipes_as_csv() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let model = model.to_str().unwrap();
+    let flown = report(1);
+    let flown = flown.to_str().unwrap();
+    let points = scratch.path().join("points.csv");
+    std::fs::write(&points, "mass_kg,pressure_altitude_ft,mach\n28000,39000,0.8\n").unwrap();
+    let plain = cruisefit(&["segment", flown]).expect(0).stdout;
+    assert!(plain.starts_with("tail,"), "{plain}");
+    let device = cruisefit(&["segment", flown, "-o", "/dev/stdout"]).expect(0).stdout;
+    assert!(device.starts_with(&plain), "{device}");
+    for command in [
+        &["predict", "--model", model, points.to_str().unwrap(), "-o", "/dev/null"][..],
+        &["evaluate", flown, "--model", model, "-o", "/dev/null"],
+        &["optimum", "--model", model, "--mass-kg", "28000", "-o", "/dev/null"],
+        &["plot", model, "-o", "/dev/null"],
+    ] {
+        cruisefit(command).expect(0);
+    }
+    let pipe = scratch.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let read = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || std::fs::read_to_string(pipe).unwrap()
+    });
+    cruisefit(&["segment", flown, "-o", pipe.to_str().unwrap()]).expect(0);
+    assert_eq!(read.join().unwrap(), plain);
+    // A file of that name is refused as before.
+    let file = scratch.path().join("table.dat");
+    cruisefit(&["segment", flown, "-o", file.to_str().unwrap()]).expect(2).says("ends neither in");
+}
+
 #[test]
 fn what_a_command_did_not_make_is_not_replaced() {
     let scratch = tempfile::tempdir().unwrap();
