@@ -117,6 +117,7 @@ fn read_reports(
     let mut reading = source.read_all(&inputs.files, &bar);
     bar.finish();
     reading.refused.extend(inputs.refused);
+    reading.other_files = inputs.skipped;
     Ok(reading)
 }
 

@@ -39,7 +39,7 @@ fn main() {
     };
     let summary = Summary {
         schema: SCHEMA,
-        reports: ReportsSummary { read: 2, already_known: 0, refused: vec![refused] },
+        reports: ReportsSummary { read: 2, refused: vec![refused], ..ReportsSummary::default() },
         tails: vec![tail("T-001", &[1.0, 2.0, 6.0]), tail("T-002", &[-0.5, 0.5])],
     };
     let html = page::report(&summary, &[], "Two tails");

@@ -244,12 +244,7 @@ fn what_was_run(summary: &Summary, sections: &[&Section]) -> String {
         words.push("no tail".to_owned());
     }
     words.extend(laws.into_iter().map(str::to_owned));
-    words.push(format!(
-        "{} read, {} already known, {} refused",
-        counted(reports.read, "report"),
-        reports.already_known,
-        reports.refused.len()
-    ));
+    words.push(reports.to_words());
     words.push(format!(
         "{}, {}, {}.",
         counted(summary.tails.len(), "tail"),

@@ -28,7 +28,7 @@ fn tail(name: &str, adapted: bool) -> TailResult {
 }
 
 fn page(tails: &[TailResult], refused: Vec<RefusedSummary>) -> String {
-    let reports = ReportsSummary { read: 12, already_known: 0, refused };
+    let reports = ReportsSummary { read: 12, refused, ..ReportsSummary::default() };
     let tails_summary = tails.iter().map(|tail| tail.summary.clone()).collect();
     report(&Summary { schema: SCHEMA, reports, tails: tails_summary }, tails, "A <run>")
 }

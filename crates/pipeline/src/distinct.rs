@@ -8,7 +8,7 @@ use crate::reading::{FlightRead, Reading, RefusedReport};
 /// Keeps one report of every flight: copies are left out with one warning for all of them, a report that contradicts
 /// another one (other content, the same hours under another name) is refused.
 pub fn distinct(reading: Reading) -> Reading {
-    let Reading { flights, mut refused, mut copies } = reading;
+    let Reading { flights, mut refused, mut copies, other_files } = reading;
     let mut order: Vec<usize> = (0..flights.len()).collect();
     order.sort_by(|one, other| flights[*one].order(&flights[*other]));
     let mut tails: BTreeMap<&str, KnownFlights> = BTreeMap::new();
@@ -44,7 +44,7 @@ pub fn distinct(reading: Reading) -> Reading {
     let mut flights = flights;
     flights.retain(|_| kept.next().unwrap_or(false));
     refused.sort_by(|one, other| one.path.cmp(&other.path));
-    Reading { flights, refused, copies }
+    Reading { flights, refused, copies, other_files }
 }
 
 /// One warning for all copies of a batch: how many, and the first with what it is a copy of.

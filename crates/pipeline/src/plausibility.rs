@@ -50,8 +50,9 @@ pub fn check_document(
     }
     let reports = ReportsSummary {
         read: reading.flights.len(),
-        already_known: 0,
+        other_files: reading.other_files,
         refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+        ..ReportsSummary::default()
     };
     CheckDocument::new(reports, findings)
 }

@@ -120,6 +120,8 @@ pub struct Reading {
     pub refused: Vec<RefusedReport>,
     /// Copies of reports that are used once.
     pub copies: usize,
+    /// Other files of the folders, which were not read.
+    pub other_files: usize,
 }
 
 impl Reading {

@@ -31,10 +31,46 @@ const fn schema() -> &'static str {
 pub struct ReportsSummary {
     /// Reports used.
     pub read: usize,
-    /// Reports of flights that were learnt before.
+    /// Reports of flights that the folder, or the run before, has learnt.
     pub already_known: usize,
+    /// Copies of this run's own reports, which are used once; absent where there are none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub copies: usize,
+    /// Other files of the folders that were named, which were not read; absent where there are none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub other_files: usize,
     /// Reports refused, with reasons.
     pub refused: Vec<RefusedSummary>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+const fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl ReportsSummary {
+    /// "14 reports read, 0 already known, 2 copies, 1 refused, 3 other files skipped"; copies and other files where there are any.
+    pub fn to_words(&self) -> String {
+        let mut words =
+            format!("{} read, {} already known", counted(self.read, "report"), self.already_known);
+        match self.copies {
+            0 => {}
+            1 => words.push_str(", 1 copy"),
+            n => {
+                let _ = write!(words, ", {n} copies");
+            }
+        }
+        let _ = write!(words, ", {} refused", self.refused.len());
+        words + &other_files_words(self.other_files)
+    }
+}
+
+/// ", 3 other files skipped", or empty.
+pub fn other_files_words(other_files: usize) -> String {
+    match other_files {
+        0 => String::new(),
+        n => format!(", {} skipped", counted(n, "other file")),
+    }
 }
 
 /// A refused report.
@@ -152,13 +188,7 @@ impl Summary {
         let lists = self.tails.iter().map(|tail| tail.not_evaluated.as_slice());
         let flights = self.tails.iter().map(|tail| tail.flights).sum();
         text.push_str(&not_evaluated::line(&not_evaluated::together(lists), flights));
-        let _ = writeln!(
-            text,
-            "{} read, {} already known, {} refused.",
-            counted(self.reports.read, "report"),
-            self.reports.already_known,
-            self.reports.refused.len()
-        );
+        let _ = writeln!(text, "{}.", self.reports.to_words());
         text
     }
 
@@ -311,6 +341,20 @@ fn push_row(row: &[String], widths: &[usize], columns: core::ops::Range<usize>, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn copies_and_other_files_are_said_where_there_are_any() {
+        let none = ReportsSummary { read: 30, ..ReportsSummary::default() };
+        assert_eq!(none.to_words(), "30 reports read, 0 already known, 0 refused");
+        let json = serde_json::to_value(&none).unwrap();
+        assert!(json.get("copies").is_none() && json.get("other_files").is_none(), "{json}");
+        let all = ReportsSummary { read: 1, copies: 2, other_files: 3, ..none };
+        assert_eq!(
+            all.to_words(),
+            "1 report read, 0 already known, 2 copies, 0 refused, 3 other files skipped"
+        );
+        assert_eq!(serde_json::to_value(&all).unwrap()["copies"], 2);
+    }
 
     #[test]
     fn a_wide_table_is_continued_below() {

@@ -79,6 +79,8 @@ pub(crate) struct Adapted {
 pub(crate) struct Reports {
     pub(crate) read: usize,
     pub(crate) already_known: usize,
+    pub(crate) copies: usize,
+    pub(crate) other_files: usize,
     pub(crate) refused: Vec<RefusedReport>,
     /// Serious findings in the data, in words.
     pub(crate) findings: String,
@@ -239,6 +241,8 @@ impl Adapted {
             reports: ReportsSummary {
                 read: reports.read,
                 already_known: reports.already_known,
+                copies: reports.copies,
+                other_files: reports.other_files,
                 refused: reports.refused.iter().map(RefusedSummary::from).collect(),
             },
             tails: tails.iter().map(|tail| tail.result.summary.clone()).collect(),

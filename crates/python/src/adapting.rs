@@ -82,8 +82,9 @@ pub(crate) fn evaluate(
                 Ok(Tail { result, flights: Vec::new(), begun: String::new(), costs: None })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        let already_known = reading.copies;
-        Ok(Adapted::new(tails, Reports { read, already_known, refused, ..Reports::default() }))
+        let Reading { copies, other_files, .. } = reading;
+        let reports = Reports { read, copies, other_files, refused, ..Reports::default() };
+        Ok(Adapted::new(tails, reports))
     })
 }
 
@@ -184,7 +185,11 @@ fn adapt_all(
     begun: Option<Arc<Vec<Tail>>>,
     caller: &Caller,
 ) -> Result<Adapted, Failure> {
-    let mut reports = Reports { refused: flights.reading.refused.clone(), ..Reports::default() };
+    let mut reports = Reports {
+        other_files: flights.reading.other_files,
+        refused: flights.reading.refused.clone(),
+        ..Reports::default()
+    };
     let mut starts = Starts::new(how.law, &flights.criteria, how.remainder);
     let mut by_tail: BTreeMap<String, ReportsByModel<'_, FlightRead>> = BTreeMap::new();
     for flight in &flights.reading.flights {
@@ -229,6 +234,7 @@ fn adapt_all(
         tails.extend(tail);
         reports.read += of_tail.read;
         reports.already_known += of_tail.already_known;
+        reports.copies += of_tail.copies;
         reports.refused.extend(of_tail.refused);
         reports.findings.push_str(&of_tail.findings);
     }
@@ -296,7 +302,7 @@ fn learn(job: Job<'_>, how: &How) -> Result<Outcome, Failure> {
     for flight in reading.flights {
         sorting.sort(flight);
     }
-    let already_known = sorting.already_known;
+    let (already_known, copies) = (sorting.already_known, sorting.copies);
     let (stored, begun) = match stored {
         Some((stored, begun)) => (Some(stored), begun),
         None => (None, start.begun.clone()),
@@ -312,5 +318,13 @@ fn learn(job: Job<'_>, how: &How) -> Result<Outcome, Failure> {
         None => before.map(|stored| Tail::learnt(stored, begun, 0, Vec::new())),
     };
     let read = tail.as_ref().map_or(0, |tail| tail.result.summary.flights_new);
-    Ok(Outcome { tail, reports: Reports { read, already_known, refused: found.refused, findings } })
+    let reports = Reports {
+        read,
+        already_known,
+        copies,
+        refused: found.refused,
+        findings,
+        ..Reports::default()
+    };
+    Ok(Outcome { tail, reports })
 }

@@ -107,8 +107,8 @@ pub(crate) fn diagnose(
         reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
         let reports = ReportsSummary {
             read: groups.iter().map(|group| group.flights.len()).sum(),
-            already_known: 0,
             refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+            ..ReportsSummary::default()
         };
         drop(groups);
         Ok(Diagnosed {

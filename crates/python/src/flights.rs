@@ -65,11 +65,12 @@ impl Source {
         Ok(Self { mapping, criteria: found, criteria_name: criteria })
     }
 
-    /// Reads files; `columnar` opens those of Parquet and Arrow.
+    /// Reads files, of whose folders so many others are left; `columnar` opens those of Parquet and Arrow.
     fn files(
         &self,
         py: Python<'_>,
         paths: Vec<PathBuf>,
+        other_files: usize,
         columnar: Py<PyAny>,
         #[pyo3(from_py_with = threads_of)] threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
@@ -79,7 +80,7 @@ impl Source {
             let read = read_all(caller, &paths, |path, reader| {
                 reading.read_one(reader, path, Place::File(path), &opening)
             })?;
-            Ok(reading.flights(read))
+            Ok(reading.flights(read, other_files))
         })
     }
 
@@ -97,7 +98,7 @@ impl Source {
             let read = read_all(caller, &reports, |(name, bytes), reader| {
                 reading.read_one(reader, name, Place::Bytes(bytes), &opening)
             })?;
-            Ok(reading.flights(read))
+            Ok(reading.flights(read, 0))
         })
     }
 
@@ -117,7 +118,7 @@ impl Source {
         run(py, threads, move |caller| {
             let how = (&mapping, &reading.criteria);
             let read = recorded_rows::read(&name, plain(batches)?, how, caller)?;
-            Ok(reading.flights(vec![read]))
+            Ok(reading.flights(vec![read], 0))
         })
     }
 }
@@ -145,8 +146,8 @@ impl Source {
         })
     }
 
-    fn flights(&self, read: Vec<FileRead>) -> Flights {
-        let mut reading = Reading::default();
+    fn flights(&self, read: Vec<FileRead>, other_files: usize) -> Flights {
+        let mut reading = Reading { other_files, ..Reading::default() };
         for (flights, refused) in read {
             reading.flights.extend(flights);
             reading.refused.extend(refused);
@@ -256,6 +257,7 @@ impl Flights {
             let other = &other.get().reading;
             all.flights.extend(other.flights.iter().cloned());
             all.refused.extend(other.refused.iter().cloned());
+            all.other_files += other.other_files;
         }
         Self::new(all, self.criteria.clone())
     }
@@ -272,7 +274,9 @@ impl Flights {
         let of = |flight: &&FlightRead| tails.contains(&flight.reduced.identity.tail);
         let flights = self.reading.flights.iter().filter(of).cloned().collect();
         let refused = self.reading.refused.clone();
-        Self::new(Reading { flights, refused, copies: 0 }, self.criteria.clone())
+        let other_files = self.reading.other_files;
+        let reading = Reading { flights, refused, copies: 0, other_files };
+        Self::new(reading, self.criteria.clone())
     }
 
     /// Every tail once, in order.

@@ -94,12 +94,15 @@ def test_copies_and_contradictions(run, fixture, models, tmp_path):
     for number, file in enumerate(files):
         (reports / f"{number}.txt").write_bytes(file.read_bytes())
     (reports / "copy.txt").write_bytes(files[0].read_bytes())
+    (reports / "readme.md").write_text("")
     lines = files[1].read_text().splitlines(keepends=True)
     (reports / "other.txt").write_text("".join(lines[:-1]))
     run("adapt", reports, "--model", models / "initial.ron", "-o", tmp_path / "out")
     read = cruisefit.segment(reports)
     adapted = cruisefit.Model.load(models / "initial.ron").adapt(read)
-    assert adapted.summary["reports"]["already_known"] == 1 and len(adapted.refused) == 1
+    counted = adapted.summary["reports"]
+    assert counted["already_known"] == 0 and counted["copies"] == 1 and counted["other_files"] == 1
+    assert len(adapted.refused) == 1
     assert adapted.summary_json() == (tmp_path / "out" / "summary.json").read_bytes()
     run("segment", reports, "-o", tmp_path / "segments.csv")
     assert read.to_csv() == (tmp_path / "segments.csv").read_bytes()

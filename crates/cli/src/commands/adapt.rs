@@ -38,6 +38,8 @@ struct Run<'a> {
     /// Whether the page of the run holds the tails' charts; otherwise each tail has its own page.
     on_one_page: bool,
     anchors: page::Anchors,
+    /// Files of the folders that are no reports.
+    other_files: usize,
     /// Counts reports: half of one when it is read, the other half when its tail has learnt.
     bar: Bar,
 }
@@ -75,6 +77,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
         source: &source,
         on_one_page: all.len() <= page::TAILS_ON_ONE_PAGE,
         anchors: page::Anchors::new(all.iter().map(String::as_str)),
+        other_files: inputs.skipped,
         bar: progress.bar(reports, "learning flights"),
     };
     let mut outcomes = learn_all(&run, tails, reports)?;

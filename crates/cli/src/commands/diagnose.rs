@@ -31,7 +31,7 @@ use pipeline::distinct::distinct;
 use pipeline::gaps_table;
 use pipeline::plausibility::{self, Absurd, Book};
 use pipeline::reading::Checks;
-use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
+use pipeline::summary::{RefusedSummary, ReportsSummary, counted, other_files_words};
 
 /// Runs the command.
 ///
@@ -66,8 +66,10 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
     let reports = ReportsSummary {
         read,
-        already_known: 0,
+        copies: reading.copies,
+        other_files: reading.other_files,
         refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+        ..ReportsSummary::default()
     };
     let path = arguments.output.join("diagnosis.json");
     let document = DiagnosisDocument::new(&asked, &reports, &diagnoses).with_fleets(&fleets);
@@ -104,9 +106,10 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     }
     let _ = writeln!(
         text,
-        "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html, gaps.csv{}",
+        "{} read, {} refused{}. Written to {}: diagnosis.json, diagnosis.html, gaps.csv{}",
         counted(read, "report"),
         refused_reports,
+        other_files_words(reading.other_files),
         show(&arguments.output),
         if arguments.fleet { ", fleet.html, fleet.csv" } else { "" }
     );

@@ -77,7 +77,9 @@ pub(crate) fn evaluate(
         schema: SCHEMA,
         reports: ReportsSummary {
             read,
-            already_known: reading.copies,
+            already_known: 0,
+            copies: reading.copies,
+            other_files: reading.other_files,
             refused: refused.iter().map(RefusedSummary::from).collect(),
         },
         tails: tails.iter().map(|tail| tail.result.summary.clone()).collect(),

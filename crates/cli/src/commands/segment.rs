@@ -13,7 +13,7 @@ use crate::reading::FlightRead;
 use crate::terminal;
 use pipeline::not_evaluated;
 use pipeline::segments_table::{self, SegmentRow};
-use pipeline::summary::{NO_SEGMENT, aligned, counted};
+use pipeline::summary::{NO_SEGMENT, aligned, counted, other_files_words};
 
 /// Runs the command.
 ///
@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
     } else {
         String::new()
     };
-    let flights = reading.flights.len();
+    let (flights, other_files) = (reading.flights.len(), reading.other_files);
     // The explanation has it in its table.
     let not_evaluated = if arguments.explain {
         String::new()
@@ -52,10 +52,11 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
         text.push_str(&explained);
         let _ = writeln!(
             text,
-            "{} of {} written to {}",
+            "{} of {} written to {}{}",
             counted(rows.len(), "segment"),
             counted(flights, "flight"),
-            show(path)
+            show(path),
+            other_files_words(other_files)
         );
         text.push_str(&not_evaluated);
         if rows.is_empty() {

@@ -304,12 +304,37 @@ fn copies_are_found_by_every_command_and_said_once() {
     let ran = run("tune", &[with_model[0], with_model[1], "-o".as_ref(), tuned.as_os_str()]);
     assert!(ran.stdout.starts_with("1 flights"), "{}", ran.stdout);
     let ran = run("evaluate", &with_model);
-    assert!(ran.stdout.contains("1 report read, 8 already known"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("1 report read, 0 already known, 8 copies"), "{}", ran.stdout);
     let (segments, learnt) = (output("s.csv"), output("o"));
     let ran = run("segment", &["-o".as_ref(), segments.as_os_str()]);
     assert!(ran.stdout.contains("of 1 flight written"), "{}", ran.stdout);
     run("adapt", &[with_model[0], with_model[1], "-o".as_ref(), learnt.as_os_str()]);
     assert_eq!(flights_of(&learnt), ["0005"]);
+    let reports = &summary(&learnt)["reports"];
+    assert_eq!((&reports["already_known"], &reports["copies"]), (&0.into(), &8.into()));
+    // All nine are copies of what the folder knows now.
+    std::fs::write(copies.join("readme.md"), "").unwrap();
+    std::fs::write(copies.join("c9.txt.part"), "").unwrap();
+    let ran = cruisefit(&[
+        "adapt".as_ref(),
+        copies.as_os_str(),
+        with_model[0],
+        with_model[1],
+        "-o".as_ref(),
+        learnt.as_os_str(),
+    ])
+    .expect(0);
+    let words = "0 reports read, 9 already known, 0 refused, 2 other files skipped";
+    assert!(ran.stdout.contains(words), "{}", ran.stdout);
+    let reports = &summary(&learnt)["reports"];
+    assert_eq!((&reports["already_known"], &reports["other_files"]), (&9.into(), &2.into()));
+    assert!(reports.get("copies").is_none(), "{reports}");
+    let ran =
+        cruisefit(&["segment".as_ref(), copies.as_os_str(), "-o".as_ref(), segments.as_os_str()])
+            .expect(0);
+    assert!(ran.stdout.contains(", 2 other files skipped"), "{}", ran.stdout);
+    let ran = cruisefit(&["check".as_ref(), copies.as_os_str()]).expect(0);
+    assert!(ran.stdout.contains("0 refused, 2 other files skipped"), "{}", ran.stdout);
 }
 
 /// What is wrong with a report is wrong with its copies: none of them counts as known.

@@ -64,7 +64,7 @@ fn fleet(names: &[String]) -> FleetRecord {
 }
 
 fn page(fleets: &[FleetRecord]) -> String {
-    let reports = ReportsSummary { read: 12, already_known: 0, refused: Vec::new() };
+    let reports = ReportsSummary { read: 12, ..ReportsSummary::default() };
     let options = ["trim criteria steady".to_owned()];
     let run =
         FleetRun { reports: &reports, fleets, diagnoses: &[], figures: &[], options: &options };

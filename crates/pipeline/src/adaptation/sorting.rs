@@ -174,7 +174,6 @@ impl Sorting {
     }
 
     fn copy(&mut self, flight: &FlightRead, index: usize) {
-        self.already_known += 1;
         self.copies += 1;
         if self.first_copy.is_none()
             && let Some(original) = self.path_of(&self.known.flights()[index])

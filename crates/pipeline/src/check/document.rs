@@ -7,7 +7,7 @@ use flight::Severity;
 use serde::Serialize;
 
 use super::{DataFinding, air, book, word};
-use crate::summary::{ReportsSummary, counted};
+use crate::summary::{ReportsSummary, counted, other_files_words};
 
 /// Schema of [`CheckDocument`].
 pub const SCHEMA: &str = "cruisefit.check/1";
@@ -74,9 +74,10 @@ impl CheckDocument {
         let mut text = to_text(&self.findings);
         let _ = writeln!(
             text,
-            "{} read, {} refused: {} serious, {}, {}.",
+            "{} read, {} refused{}: {} serious, {}, {}.",
             counted(self.reports.read, "report"),
             self.reports.refused.len(),
+            other_files_words(self.reports.other_files),
             self.counts.serious,
             counted(self.counts.warning, "warning"),
             counted(self.counts.note, "note"),

@@ -227,16 +227,16 @@ def segment(
     reading = _native.Source(criteria, None if mapping is None else _mapping(mapping))
     if is_table(reports):
         return _looked_through(reading.rows(name, as_stream(reports), threads))
-    paths, contents = _found(reports, _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
+    paths, contents, other_files = _found(reports, _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
     require_pyarrow([*((str(path), path) for path in paths), *contents])
-    read = reading.files(paths, opened, threads)
+    read = reading.files(paths, other_files, opened, threads)
     if contents:
         read = read.and_([reading.contents(contents, opened, threads)])
     return _looked_through(read)
 
 
-def _found(reports: Any, endings: tuple[str, ...]) -> tuple[list[Path], list[tuple[str, bytes]]]:
-    """The files that were named, in order, each once, and what is in memory with its names.
+def _found(reports: Any, endings: tuple[str, ...]) -> tuple[list[Path], list[tuple[str, bytes]], int]:
+    """The files that were named, in order, each once, what is in memory with its names, and how many other files were skipped.
 
     Raises:
         InputError: There is neither.
@@ -267,7 +267,7 @@ def _found(reports: Any, endings: tuple[str, ...]) -> tuple[list[Path], list[tup
         where = f" in {', '.join(map(str, searched))}" if searched else ""
         others_skipped = f"; files skipped for their endings: {skipped}" if skipped else ""
         raise InputError(f"found no cruise report{where}, expected one or more{others_skipped}")
-    return sorted(paths), contents
+    return sorted(paths), contents, skipped
 
 
 def _several(reports: Any) -> Iterable[Any]:

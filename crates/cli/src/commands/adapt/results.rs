@@ -56,6 +56,8 @@ pub(super) fn write(
         reports: ReportsSummary {
             read: outcomes.iter().map(|outcome| outcome.flights_new).sum(),
             already_known: outcomes.iter().map(|outcome| outcome.already_known).sum(),
+            copies: outcomes.iter().map(|outcome| outcome.copies).sum(),
+            other_files: run.other_files,
             refused: refused.iter().map(RefusedSummary::from).collect(),
         },
         tails: tails.collect(),

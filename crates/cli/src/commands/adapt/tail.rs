@@ -59,8 +59,7 @@ pub(super) struct TailOutcome {
 }
 
 impl TailOutcome {
-    /// With the copies of its reports: a copy of a refused report is refused for the same reason, any other is a flight that is
-    /// known.
+    /// With the copies of its reports: a copy of a refused report is refused for the same reason, any other is counted.
     fn add_copies(&mut self, copies: Vec<CopyOf>) {
         if copies.is_empty() {
             return;
@@ -72,7 +71,6 @@ impl TailOutcome {
                 self.refused.push(RefusedReport { path: path.into(), ..refusal.clone() });
                 continue;
             }
-            self.already_known += 1;
             self.copies += 1;
             let names = || (path.display().to_string(), original.display().to_string());
             self.first_copy.get_or_insert_with(names);

@@ -58,7 +58,7 @@ pub(super) fn fleet(page: &Path) -> Value {
         "tails": tails, "left_out": [],
     });
     let record: FleetRecord = serde_json::from_value(document.clone()).unwrap();
-    let reports = ReportsSummary { read: 1800, already_known: 0, refused: Vec::new() };
+    let reports = ReportsSummary { read: 1800, ..ReportsSummary::default() };
     let run = FleetRun {
         reports: &reports,
         fleets: std::slice::from_ref(&record),
