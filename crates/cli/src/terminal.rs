@@ -7,6 +7,7 @@ pub(crate) mod kinds;
 pub(crate) mod warnings;
 
 use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
 use std::sync::OnceLock;
@@ -135,14 +136,33 @@ pub(crate) fn print_data(bytes: &[u8]) -> std::io::Result<()> {
     }
 }
 
-/// Refused reports to standard error: one line each. On a terminal those beyond the fifth of one kind are counted.
+/// Refused reports to standard error: one line each; more than five of one tail for one reason that is the tail's ("tail T flight 7
+/// is in the model's ledger") in one line with their number. On a terminal those beyond the fifth of one kind are counted.
 pub(crate) fn tell_refused(refused: &[RefusedReport]) {
     let terminal = Terminal::of_run();
     let most = if terminal.err.width.is_some() { REFUSALS_OF_A_KIND } else { usize::MAX };
     let mut told = kinds::Told::new(most);
+    let mut of_tails: BTreeMap<(&str, String), usize> = BTreeMap::new();
+    for reason in refused.iter().filter_map(reason_of_tail) {
+        *of_tails.entry(reason).or_default() += 1;
+    }
+    of_tails.retain(|_, count| *count > REFUSALS_OF_A_KIND);
+    let mut folded = BTreeSet::new();
     // Several flights of a recording may be refused for the same reason.
     for alike in refused.chunk_by(|one, other| one == other) {
         let one = &alike[0];
+        if let Some(reason) = reason_of_tail(one)
+            && let Some(count) = of_tails.get(&reason)
+        {
+            let tail = reason.0;
+            if folded.insert(reason) {
+                tell(&format!(
+                    "refused: {one} (and {} more of tail {tail} like this)\n",
+                    count - 1
+                ));
+            }
+            continue;
+        }
         if told.is_told(&one.reason) {
             let is_first = told.count(&one.reason) == 1;
             let times = match alike.len() {
@@ -158,6 +178,12 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
     for (reason, more) in told.untold() {
         tell(&format!("refused: {more} more like this: {reason}\n"));
     }
+}
+
+/// The tail that a refusal is a matter of, and its reason without what differs from flight to flight.
+fn reason_of_tail(one: &RefusedReport) -> Option<(&str, String)> {
+    let tail = one.reason.strip_prefix("tail ")?.split(' ').next()?;
+    Some((tail, kinds::kind_of(&one.reason)))
 }
 
 fn tell_excerpt(path: &std::path::Path, line: usize, column: Option<usize>, reason: &str) {

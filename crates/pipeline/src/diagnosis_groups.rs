@@ -94,7 +94,10 @@ pub fn group<'a>(
                 flight.reduced.identity.start
             );
             if !asked.allow_learnt {
-                let reason = format!("{finding} (--allow-learnt diagnoses it anyway)");
+                let reason = format!(
+                    "{finding}; hold it against the initial model of its type, or a model from before this flight \
+                     (--allow-learnt diagnoses it anyway)"
+                );
                 reading.refused.push(RefusedReport::whole(flight.path, reason));
                 continue;
             }

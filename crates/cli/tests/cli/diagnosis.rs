@@ -34,6 +34,12 @@ fn flights_in_the_ledger_are_refused_by_name() {
         .expect(2)
         .says("tail SIM-01 flight 0001 of 2019-03-14T10:45:00Z is in the model's ledger");
     assert!(!output.exists());
+    // A night of them is a line: what is wrong is the same of all.
+    let all = scratch.path().join("all");
+    adapt(&initial, &all, &reports(1..=12), &[]).expect(0);
+    let ran = diagnose(&all.join("models/SIM-01.ron"), &output, &reports(1..=12), &[]).expect(2);
+    assert_eq!(ran.stderr.matches("is in the model's ledger").count(), 1, "{}", ran.stderr);
+    ran.says("(and 11 more of tail SIM-01 like this)").says("the initial model of its type");
     // Asked for, they are used, and the output reports it.
     diagnose(&model, &output, &reports(1..=3), &["--allow-learnt"])
         .expect(0)
