@@ -23,11 +23,9 @@ const POINTS_OF_PAGE: usize = 60_000;
 
 /// The page of what `monitor` found; `options` says what the run was asked for.
 pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
-    let mut tails: Vec<(usize, &TailDocument)> = document.tails.iter().enumerate().collect();
-    // What burns most comes first; the sort is stable.
-    tails.sort_by(|(_, one), (_, other)| {
-        other.deviation_percent.value.total_cmp(&one.deviation_percent.value)
-    });
+    let order = document.by_news().into_iter();
+    let tails: Vec<(usize, &TailDocument)> =
+        order.map(|place| (place, &document.tails[place])).collect();
     let most = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
     let body = html! {
         p.run { (head(document, options)) }
@@ -42,11 +40,15 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
              0.1 %. The report page of " code { "adapt" } " states the mean over all flights at the conditions flown, which is another \
              figure where a tail has changed or flies other routes."
         }
+        p.note {
+            "First the tails of which a rule fired, or which have changed in the last 90 days of these flights, then what burns most \
+             over the mean of its type. Where the change of one engine is that of all together, the engine's alone is told."
+        }
         @if !document.alerts.is_empty() { (alerts(document)) }
         section {
             h2 { "Fleet" }
             (fleet(document))
-            div.scroll { (table(&tails)) }
+            div.scroll { (table(&tails, document)) }
         }
         section {
             h2 { "Tails" }
@@ -83,14 +85,14 @@ fn head(document: &MonitorDocument, options: &[String]) -> String {
 /// What the tail does, what to do about it, and by which model.
 fn in_words(tail: &TailDocument, document: &MonitorDocument) -> Markup {
     html! {
-        dl.verdict.gap[words::burns_otherwise(tail)] {
+        dl.verdict.gap[words::has_cause_to_find(tail, document)] {
             dt { "What" }
             dd {
                 b { (words::found(tail)) }
                 @if let Some(shared) = words::shared(tail, &document.fleet) { " " (shared) }
             }
             dt { "What to do" }
-            dd { @for (k, advice) in words::advice(tail, &document.alerts).iter().enumerate() { @if k > 0 { br; } (advice) } }
+            dd { @for (k, advice) in words::advice(tail, document).iter().enumerate() { @if k > 0 { br; } (advice) } }
         }
         p.note { (tail.aircraft_type) ", " (tail.model) "." }
     }
@@ -118,7 +120,9 @@ fn alerts(document: &MonitorDocument) -> Markup {
             ul {
                 @for alert in &document.alerts {
                     li {
-                        b { (alert.tail) } ": " (figure(&alert.size)) " " (alert.unit) " since " (day(&alert.since))
+                        b { (alert.tail) }
+                        @if let Some(engine) = alert.engine { ", engine " (engine) }
+                        ": " (figure(&alert.size)) " " (alert.unit) " since " (day(&alert.since))
                         " (" code { (alert.rule) } ")"
                         @if !alert.likely_causes.is_empty() { "; likely " (alert.likely_causes.join(", ")) }
                         @else if let Some(reason) = &alert.no_likely_cause { "; no likely cause: " (reason) }
@@ -152,17 +156,22 @@ const A_YEAR: [(&str, OfCost); 3] = [
     ("price/year now", |cost| cost.price_per_year),
 ];
 
-fn table(tails: &[(usize, &TailDocument)]) -> Markup {
+fn table(tails: &[(usize, &TailDocument)], document: &MonitorDocument) -> Markup {
     let of_any = |of: OfCost| tails.iter().any(|(_, tail)| of(&tail.cost).is_some());
     // Fuel a year alone follows from that of a flight.
     let follows: Vec<_> = A_YEAR[1..].iter().filter(|(_, of)| of_any(*of)).collect();
     let a_year: Vec<_> =
         A_YEAR[..1].iter().filter(|_| !follows.is_empty()).chain(follows.clone()).collect();
+    let several = document.has_several_types();
+    let compared = tails.iter().any(|(_, tail)| document.against_type(tail).is_some());
     html! {
         table.fleet.sort.data data-name="monitor" {
             thead {
                 tr {
-                    th scope="col" { "tail" } th scope="col" { "flights" } th scope="col" { "level now, %" }
+                    th scope="col" { "tail" }
+                    @if several { th scope="col" { "type" } }
+                    th scope="col" { "flights" } th scope="col" { "level now, %" }
+                    @if compared { th scope="col" { "against its type, %" } }
                     th scope="col" { "factor now, %" } th scope="col" { "kg/flight now" } th scope="col" { "DSR, all flights, %" }
                     @for (name, _) in &a_year { th scope="col" { (name) } }
                     th scope="col" { "trend, %/year" } th scope="col" { "last change" }
@@ -172,8 +181,15 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
                 @for (id, tail) in tails {
                     tr {
                         th scope="row" { a href=(format!("#tail-{id}")) { (tail.tail) } }
+                        @if several { td { (tail.aircraft_type) } }
                         td data-v=(tail.flights.len()) { (tail.flights.len()) }
                         td data-v=(tail.deviation_percent.value) { (figure(&tail.deviation_percent)) }
+                        @if compared {
+                            @match document.against_type(tail) {
+                                Some(against) => { td data-v=(against.value) { (figure(&against)) } }
+                                None => { td { "–" } }
+                            }
+                        }
                         td data-v=(tail.airbus.fuel_factor_percent.value) { (signed_tenths(tail.airbus.entered_fuel_factor_percent())) }
                         td data-v=(tail.cost.fuel_kg_per_flight) { (signed_tenths(tail.cost.fuel_kg_per_flight)) }
                         td data-v=(tail.airbus.specific_range_deviation_percent) { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
@@ -185,8 +201,12 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
                         }
                         td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
                         td {
-                            @match tail.changes.iter().rfind(|change| change.engine.is_none()) {
-                                Some(change) => { (day(&change.since)) ": " (signed(Some(change.step_percent.value))) " %" }
+                            @match words::newest(tail.told_changes().into_iter()) {
+                                Some(change) => {
+                                    (day(&change.since)) ": "
+                                    @if let Some(engine) = change.engine { "engine " (engine) " " }
+                                    (signed(Some(change.step_percent.value))) " %"
+                                }
                                 None => "–",
                             }
                         }

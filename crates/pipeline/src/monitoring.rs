@@ -9,9 +9,11 @@ mod document;
 mod events;
 mod flights;
 mod flights_table;
+mod order;
 mod tables;
 mod tail;
 mod text;
+mod told;
 
 pub use ::monitor::airbus::monitored_fuel_factor_percent;
 pub use deviations::{BeforeLearning, TailDeviations};

@@ -4,8 +4,8 @@
 use monitor::FlightDeviation;
 use pipeline::model_file::{GuideRecord, LawSettings, ModelFile};
 use pipeline::monitoring::{
-    BeforeLearning, Event, MeanConditions, MonitorDocument, MonitorOptions, MonitoredFlight,
-    MonitoredTail, Rows, TailDeviations, TailDocument, tables, text,
+    AlertDocument, BeforeLearning, Event, MeanConditions, MonitorDocument, MonitorOptions,
+    MonitoredFlight, MonitoredTail, Rows, TailDeviations, TailDocument, tables, text,
 };
 use test_support::fleet::{Background, Setup, exact_model, fly};
 
@@ -30,12 +30,23 @@ fn model() -> ModelFile {
 
 /// Sixty flights without any effect; from the 31st on, engine 2 burns 3 % more. Events lie an hour before that flight.
 fn changed(kinds: &[&str]) -> TailDocument {
+    found(&[(1, 1.03)], kinds, &[]).0
+}
+
+/// The same with engines (from 0) whose fuel flow is multiplied from the 31st flight on, and what fires of some rules.
+fn found(
+    engines: &[(usize, f64)],
+    kinds: &[&str],
+    rules: &[&str],
+) -> (TailDocument, Vec<AlertDocument>) {
     let fleet = fly(160, &Setup::default(), &[], &Background::default());
     let mut segments = Vec::new();
     for (number, mut flight) in fleet.flights.into_iter().enumerate() {
         for segment in flight.iter_mut().filter(|_| number >= 30) {
             let flows = &mut segment.means.fuel_flow_engine_kg_s;
-            flows[1] *= 1.03;
+            for (engine, factor) in engines {
+                flows[*engine] *= factor;
+            }
             segment.means.fuel_flow_total_kg_s = flows.iter().sum();
         }
         segments.extend(flight);
@@ -52,7 +63,38 @@ fn changed(kinds: &[&str]) -> TailDocument {
     };
     let events: Vec<Event> = kinds.iter().map(event).collect();
     let found = MonitoredTail::new(&tail, &deviations, &events).unwrap().unwrap();
-    found.document(&MonitorOptions::default())
+    let rules = rules.iter().map(|rule| rule.parse().unwrap()).collect();
+    let options = MonitorOptions { rules, ..MonitorOptions::default() };
+    (found.document(&options), found.alerts(&options))
+}
+
+/// Engine by engine what was planted, by hand: 3 % of engine 2 are one event and not another one of all; an exchange of +2 and −2 %
+/// is nothing of all; of +2 % of both engines that of all is told.
+#[test]
+fn a_rule_for_changes_looks_at_single_engines_and_fires_once_for_an_event() {
+    for (planted, expected) in [
+        (&[(1, 1.03)][..], &[(Some(2), 2.96)][..]),
+        (&[(0, 1.02), (1, 0.98)][..], &[(Some(1), 1.98), (Some(2), -2.02)][..]),
+        (&[(0, 1.02), (1, 1.02)][..], &[(None, 1.98)][..]),
+    ] {
+        let (document, alerts) = found(planted, &[], &["change=1", "deviation=9"]);
+        let fired: Vec<Option<usize>> = alerts.iter().map(|alert| alert.engine).collect();
+        let engines: Vec<Option<usize>> = expected.iter().map(|(engine, _)| *engine).collect();
+        assert_eq!(fired, engines, "{planted:?}: {:?}", document.changes);
+        for (alert, (_, step)) in alerts.iter().zip(expected) {
+            let error = (alert.size.value - step).abs();
+            assert!(error < 1.5 * alert.size.half_width(), "{planted:?}: {alert:?}");
+        }
+        let document = MonitorDocument::new(vec![document], alerts);
+        let table = tables(&document).pop().unwrap();
+        let csv = String::from_utf8(table.columns.to_csv()).unwrap();
+        let engine = expected[0].0.map_or_else(|| "all".to_owned(), |engine| engine.to_string());
+        assert!(csv.lines().nth(1).unwrap().contains(&format!(",{engine},change=1,")), "{csv}");
+        let words = expected[0].0.map_or_else(String::new, |engine| format!(" engine {engine}"));
+        let printed = text(&document, Rows::Tails);
+        let tail = &document.tails[0].tail;
+        assert!(printed.contains(&format!("ALERT {tail}{words}: ")), "{printed}");
+    }
 }
 
 /// Oracle: what was planted, 100·ln 1.03 on engine 2, nothing on engine 1, and 100·ln 1.015 on both together.

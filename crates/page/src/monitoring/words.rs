@@ -2,16 +2,49 @@
 //! predicted; the figures that they are made from are logarithms.
 
 use pipeline::monitoring::{
-    AirbusTerms, AlertDocument, ChangeDocument, Figure, FleetDocument, TailDocument,
-    monitored_fuel_factor_percent,
+    AirbusTerms, AlertDocument, ChangeDocument, Figure, FleetDocument, MonitorDocument,
+    TailDocument, monitored_fuel_factor_percent,
 };
 
 use super::{day, figure};
 use crate::text::{signed, signed_tenths};
 
 /// Whether the tail burns more or less than its initial model predicts.
-pub(super) fn burns_otherwise(tail: &TailDocument) -> bool {
+fn burns_otherwise(tail: &TailDocument) -> bool {
     differs_from_zero(&tail.deviation_percent)
+}
+
+/// Fewest tails of a type whose mean says what is the model's.
+const FEWEST_TAILS: usize = 3;
+
+/// Whether there is a cause to look for on the tail: it burns otherwise than predicted, and otherwise than its type, or since a change
+/// that no event explains. What all tails of a type burn otherwise is the model's.
+pub(super) fn has_cause_to_find(tail: &TailDocument, document: &MonitorDocument) -> bool {
+    burns_otherwise(tail)
+        && (unexplained(tail).next().is_some() || differs_from_type(tail, document))
+}
+
+fn differs_from_type(tail: &TailDocument, document: &MonitorDocument) -> bool {
+    let is_its = |fleet: &&FleetDocument| fleet.aircraft_type == tail.aircraft_type;
+    let fleet = document.fleet.iter().find(is_its);
+    let is_known = fleet.is_some_and(|fleet| fleet.tails >= FEWEST_TAILS);
+    let against = document.against_type(tail).filter(|_| is_known);
+    against.is_none_or(|against| differs_from_zero(&against))
+}
+
+/// Changes that no event explains, each event once.
+fn unexplained(tail: &TailDocument) -> impl Iterator<Item = &ChangeDocument> {
+    let is_unexplained = |change: &&ChangeDocument| {
+        change.event.is_none() && differs_from_zero(&change.step_percent)
+    };
+    tail.told_changes().into_iter().filter(is_unexplained)
+}
+
+/// The newest of some changes. Instants are written alike, in UTC; of several at one the first, that of all engines.
+pub(super) fn newest<'a>(
+    changes: impl DoubleEndedIterator<Item = &'a ChangeDocument>,
+) -> Option<&'a ChangeDocument> {
+    changes.rev().max_by(|one, other| one.since.cmp(&other.since))
 }
 
 /// What the fuel flow of a tail does, in a sentence.
@@ -40,7 +73,7 @@ pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<St
     let fleet = fleets.iter().find(|fleet| fleet.aircraft_type == tail.aircraft_type)?;
     let level = &fleet.deviation_percent;
     let same_sign = level.value * tail.deviation_percent.value > 0.0;
-    (fleet.tails > 2 && burns_otherwise(tail) && differs_from_zero(level) && same_sign).then(|| {
+    (fleet.tails >= FEWEST_TAILS && burns_otherwise(tail) && differs_from_zero(level) && same_sign).then(|| {
         format!(
             "The {} tails of its type burn {} % {} in the mean: that part is the model's rather than the aircraft's.",
             fleet.tails,
@@ -51,14 +84,10 @@ pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<St
 }
 
 /// What to do about it; never empty.
-pub(super) fn advice(tail: &TailDocument, alerts: &[AlertDocument]) -> Vec<String> {
-    // The newest is the one that can still be looked up; the others are listed below it. Instants are written alike, in UTC;
-    // of several at one the first, that of all engines.
-    let unexplained = tail
-        .changes
-        .iter()
-        .filter(|change| change.event.is_none() && differs_from_zero(&change.step_percent));
-    let newest = unexplained.rev().max_by(|one, other| one.since.cmp(&other.since));
+pub(super) fn advice(tail: &TailDocument, document: &MonitorDocument) -> Vec<String> {
+    // The newest is the one that can still be looked up; the others are listed below it.
+    let unexplained: Vec<&ChangeDocument> = unexplained(tail).collect();
+    let newest = newest(unexplained.into_iter());
     let mut told: Vec<String> = newest.map(look_up).into_iter().collect();
     if differs_from_zero(&tail.trend_percent_per_year) && tail.trend_percent_per_year.value > 0.0 {
         told.push(
@@ -66,9 +95,11 @@ pub(super) fn advice(tail: &TailDocument, alerts: &[AlertDocument]) -> Vec<Strin
                 .to_owned(),
         );
     }
-    if burns_otherwise(tail) {
-        told.push(cause(tail, alerts));
-        told.push(plan_with(&tail.airbus));
+    if has_cause_to_find(tail, document) {
+        told.push(cause(tail, &document.alerts, newest));
+        told.push(format!("Until then: {}.", plan_with(&tail.airbus)));
+    } else if burns_otherwise(tail) {
+        told.push(format!("For flight planning: {}.", plan_with(&tail.airbus)));
     }
     if told.is_empty() {
         told.push("Nothing to do.".to_owned());
@@ -83,10 +114,10 @@ fn plan_with(factor: &AirbusTerms) -> String {
     let entered = signed_tenths(factor.entered_fuel_factor_percent());
     match factor.performance_factor_percent {
         Some(percent) => format!(
-            "Until then: FMS PERF FACTOR {} %, with a fuel factor of {entered} % ({interval}).",
+            "FMS PERF FACTOR {} %, with a fuel factor of {entered} % ({interval})",
             signed_tenths(percent)
         ),
-        None => format!("Until then, plan with a fuel factor of {entered} % ({interval})."),
+        None => format!("plan with a fuel factor of {entered} % ({interval})"),
     }
 }
 
@@ -100,8 +131,8 @@ fn look_up(change: &ChangeDocument) -> String {
     )
 }
 
-/// Where the cause is named, or how to find it.
-fn cause(tail: &TailDocument, alerts: &[AlertDocument]) -> String {
+/// Where the cause is named, or how to find it: by a model that has not learnt these flights.
+fn cause(tail: &TailDocument, alerts: &[AlertDocument], newest: Option<&ChangeDocument>) -> String {
     let of_tail = || alerts.iter().filter(|alert| alert.tail == tail.tail);
     if let Some(alert) = of_tail().find(|alert| !alert.likely_causes.is_empty()) {
         let causes = alert.likely_causes.join(", ");
@@ -109,7 +140,21 @@ fn cause(tail: &TailDocument, alerts: &[AlertDocument]) -> String {
     }
     match of_tail().find_map(|alert| alert.no_likely_cause.as_ref()) {
         Some(reason) => format!("The newest diagnosis names no cause: {reason}."),
-        None => "Find the cause: cruisefit diagnose with this tail's reports.".to_owned(),
+        None => {
+            let older = newest.map_or_else(String::new, |change| {
+                format!(
+                    " For the change alone take the model of {} in a copy of the folder from before {}, and the reports since then.",
+                    tail.tail,
+                    day(&change.since_ci95[0])
+                )
+            });
+            format!(
+                "Find the cause: cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of {}, the initial model \
+                 of type {}, which was given to cruisefit adapt, and a new folder; the tail's own model has learnt these \
+                 flights, which hides what is found here.{older}",
+                tail.tail, tail.aircraft_type
+            )
+        }
     }
 }
 
@@ -158,6 +203,10 @@ mod tests {
         .unwrap()
     }
 
+    fn alone(tail: &TailDocument, alerts: &[AlertDocument]) -> MonitorDocument {
+        MonitorDocument::new(vec![tail.clone()], alerts.to_vec())
+    }
+
     fn change(day: &str, event: Option<&str>) -> serde_json::Value {
         let time = format!("{day}T00:00:00Z");
         serde_json::json!({ "engine": 2, "since": time, "since_ci95": [time, time], "probability": 0.99,
@@ -171,7 +220,7 @@ mod tests {
             found(&tail),
             "Burns what its initial model predicts (+0.10 ± 0.30 %); no trend stands out (-1.00 ± 2.00 % a year)."
         );
-        assert_eq!(advice(&tail, &[]), ["Nothing to do."]);
+        assert_eq!(advice(&tail, &alone(&tail, &[])), ["Nothing to do."]);
     }
 
     #[test]
@@ -211,6 +260,7 @@ mod tests {
         let tail = tail((1.2, 0.2), (0.0, 1.0), &serde_json::json!([]));
         let alert = AlertDocument {
             tail: "N1".to_owned(),
+            engine: None,
             rule: "deviation=1".to_owned(),
             size: tail.deviation_percent,
             unit: "%".to_owned(),
@@ -218,7 +268,7 @@ mod tests {
             likely_causes: Vec::new(),
             no_likely_cause: Some("no cause stands out".to_owned()),
         };
-        let told = advice(&tail, &[alert]);
+        let told = advice(&tail, &alone(&tail, &[alert]));
         assert_eq!(told[0], "The newest diagnosis names no cause: no cause stands out.");
     }
 
@@ -234,7 +284,7 @@ mod tests {
             found(&tail),
             "Burns 1.21 ± 0.20 % more than its initial model predicts (level +1.20 ± 0.20), and 0.50 ± 0.10 % more each year."
         );
-        let told = advice(&tail, &[]);
+        let told = advice(&tail, &alone(&tail, &[]));
         assert_eq!(told.len(), 4, "{told:?}");
         assert!(told[0].contains("2026-02-05") && told[0].contains("engine 2"), "{told:?}");
         assert!(told[2].starts_with("Find the cause"), "{told:?}");
@@ -250,6 +300,7 @@ mod tests {
         let tail = tail((-1.2, 0.2), (0.0, 1.0), &serde_json::json!([]));
         let alert = |name: &str| AlertDocument {
             tail: name.to_owned(),
+            engine: None,
             rule: "deviation=1".to_owned(),
             size: tail.deviation_percent,
             unit: "%".to_owned(),
@@ -257,8 +308,58 @@ mod tests {
             likely_causes: vec![format!("cause_of_{name}")],
             no_likely_cause: None,
         };
-        let told = advice(&tail, &[alert("N2"), alert("N1")]);
+        let told = advice(&tail, &alone(&tail, &[alert("N2"), alert("N1")]));
         assert!(told[0].contains("cause_of_N1"), "{told:?}");
         assert!(found(&tail).starts_with("Burns 1.19 ± 0.20 % less"), "{}", found(&tail));
+    }
+
+    /// Four tails of +8 %, of which two have changed, one by a wash; then one of four burns 0.75 % more than the mean of all.
+    #[test]
+    fn a_cause_is_looked_for_where_a_tail_differs_from_its_type_or_has_changed() {
+        let none = serde_json::json!([]);
+        let named = |name: &str, level: f64, changes: &serde_json::Value| TailDocument {
+            tail: name.to_owned(),
+            ..tail((level, 0.3), (0.0, 1.0), changes)
+        };
+        let unexplained = serde_json::json!([change("2026-02-05", None)]);
+        let washed = serde_json::json!([change("2026-02-05", Some("wash"))]);
+        let alike = MonitorDocument::new(
+            [("N1", &none), ("N2", &unexplained), ("N3", &washed), ("N5", &none)]
+                .map(|(name, changes)| named(name, 8.0, changes))
+                .to_vec(),
+            Vec::new(),
+        );
+        let found: Vec<bool> =
+            alike.tails.iter().map(|tail| has_cause_to_find(tail, &alike)).collect();
+        assert_eq!(found, [false, true, false, false]);
+        let levels = [("N1", 8.0), ("N2", 8.0), ("N3", 8.0), ("N4", 9.0)];
+        let tails = levels.map(|(name, level)| named(name, level, &none)).to_vec();
+        let other = MonitorDocument::new(tails, Vec::new());
+        assert!(has_cause_to_find(&other.tails[3], &other));
+        assert!(!has_cause_to_find(&other.tails[0], &other));
+        let told = advice(&alike.tails[0], &alike);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].starts_with("For flight planning: plan with a fuel factor"), "{told:?}");
+        let told = advice(&alike.tails[1], &alike);
+        let words = "cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of N2, the initial model of type C750";
+        assert!(told[1].contains(words), "{told:?}");
+        assert!(told[1].contains("from before 2026-02-05"), "{told:?}");
+    }
+
+    /// 1.88 % of one engine is 0.94 % of two: one event, of which the engine's interval of the date is the narrower.
+    #[test]
+    fn the_engine_that_changed_is_named_and_its_date() {
+        let changes = serde_json::json!([
+            { "engine": null, "since": "2024-10-14T00:00:00Z",
+              "since_ci95": ["2024-09-30T00:00:00Z", "2024-10-17T00:00:00Z"], "probability": 0.9,
+              "step_percent": figure(0.87, 0.30), "event": null },
+            { "engine": 2, "since": "2024-10-04T00:00:00Z",
+              "since_ci95": ["2024-10-04T00:00:00Z", "2024-10-07T00:00:00Z"], "probability": 1.0,
+              "step_percent": figure(1.88, 0.32), "event": null },
+        ]);
+        let tail = tail((1.2, 0.2), (0.0, 1.0), &changes);
+        let told = advice(&tail, &alone(&tail, &[]));
+        let words = "between 2024-10-04 and 2024-10-07: the fuel flow of engine 2 changed by +1.90";
+        assert!(told[0].contains(words), "{told:?}");
     }
 }

@@ -280,6 +280,9 @@ pub struct FleetMonthDocument {
 pub struct AlertDocument {
     /// Tail.
     pub tail: String,
+    /// Engine, from 1; absent for all together.
+    #[serde(default)]
+    pub engine: Option<usize>,
     /// The rule as it was given.
     pub rule: String,
     /// What it looked at.

@@ -195,10 +195,7 @@ fn changes(document: &MonitorDocument) -> Columns {
     let rows = rows_of(&document.tails, |tail| &tail.changes);
     let mut columns = Columns::default();
     columns.text("tail", rows.iter().map(|(tail, _)| (*tail).to_owned()));
-    columns.text(
-        "engine",
-        rows.iter().map(|(_, c)| c.engine.map_or_else(|| "all".to_owned(), |k| k.to_string())),
-    );
+    columns.text("engine", rows.iter().map(|(_, change)| engine_name(change.engine)));
     columns.text("since", rows.iter().map(|(_, change)| change.since.clone()));
     columns.text("since_ci95_low", rows.iter().map(|(_, change)| change.since_ci95[0].clone()));
     columns.text("since_ci95_high", rows.iter().map(|(_, change)| change.since_ci95[1].clone()));
@@ -239,10 +236,16 @@ fn alerts(document: &MonitorDocument) -> Columns {
     let rows = &document.alerts;
     let mut columns = Columns::default();
     columns.text("tail", rows.iter().map(|alert| alert.tail.clone()));
+    columns.text("engine", rows.iter().map(|alert| engine_name(alert.engine)));
     columns.text("rule", rows.iter().map(|alert| alert.rule.clone()));
     figure(&mut columns, "size", rows, |alert| Some(alert.size));
     columns.text("unit", rows.iter().map(|alert| alert.unit.clone()));
     columns.text("since", rows.iter().map(|alert| alert.since.clone()));
     columns.text("likely_causes", rows.iter().map(|alert| alert.likely_causes.join(" ")));
     columns
+}
+
+/// `all`, or an engine's number.
+fn engine_name(engine: Option<usize>) -> String {
+    engine.map_or_else(|| "all".to_owned(), |engine| engine.to_string())
 }

@@ -1,5 +1,7 @@
 //! One tail: its series read, and written down.
 
+mod alerts;
+
 use core::ops::Range;
 
 use flight::Timestamp;
@@ -12,8 +14,8 @@ use monitor::{
 
 use super::deviations::{BeforeLearning, TailDeviations};
 use super::document::{
-    AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure,
-    FlightDocument, MonthDocument, TailDocument,
+    AirbusTerms, ChangeDocument, CostDocument, EventDocument, Figure, FlightDocument,
+    MonthDocument, TailDocument,
 };
 use super::events::Event;
 use super::flights::{MeanConditions, MonitoredFlight};
@@ -191,10 +193,6 @@ impl<'a> MonitoredTail<'a> {
         let months = self.months();
         let level = self.history.levels.last_level_percent(self.series());
         let noise = &self.history.noise;
-        let mut changes = self.changes(None, &self.history);
-        for (engine, history) in self.engines.of_each.iter().enumerate() {
-            changes.extend(self.changes(Some(engine + 1), history));
-        }
         let date = |flight: Option<&&MonitoredFlight>| {
             flight.map_or_else(String::new, |flight| flight.start.to_string())
         };
@@ -213,7 +211,7 @@ impl<'a> MonitoredTail<'a> {
             correlation: noise.correlation,
             airbus: self.airbus(level.into(), &months, options),
             cost: self.cost(level, options),
-            changes,
+            changes: self.all_changes(),
             flights_without_engines: match self.engines.flights.len() {
                 0 => 0,
                 recorded => self.flights.len() - recorded,
@@ -222,27 +220,6 @@ impl<'a> MonitoredTail<'a> {
             flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
             months,
         }
-    }
-
-    /// The rules that fire, in the order of the rules.
-    #[must_use]
-    pub fn alerts(&self, options: &MonitorOptions) -> Vec<AlertDocument> {
-        let alerts = options.rules.iter().flat_map(|rule| rule.apply(self.series(), &self.history));
-        alerts
-            .map(|alert| AlertDocument {
-                tail: self.tail.to_owned(),
-                rule: alert.rule.to_string(),
-                size: alert.size.into(),
-                unit: match alert.rule {
-                    AlertRule::Trend { .. } => "%/year",
-                    AlertRule::Deviation { .. } | AlertRule::Change { .. } => "%",
-                }
-                .to_owned(),
-                since: alert.since.to_string(),
-                likely_causes: Vec::new(),
-                no_likely_cause: None,
-            })
-            .collect()
     }
 
     /// What its flights would have shown at their mean conditions.
@@ -349,6 +326,15 @@ impl<'a> MonitoredTail<'a> {
             co2_kg_per_year: flights_per_year.and(cost.co2_kg_per_year),
             price_per_year: flights_per_year.and(cost.price_per_year),
         }
+    }
+
+    /// Those of all engines together, then engine by engine.
+    fn all_changes(&self) -> Vec<ChangeDocument> {
+        let mut changes = self.changes(None, &self.history);
+        for (engine, history) in self.engines.of_each.iter().enumerate() {
+            changes.extend(self.changes(Some(engine + 1), history));
+        }
+        changes
     }
 
     fn changes(&self, engine: Option<usize>, history: &History) -> Vec<ChangeDocument> {

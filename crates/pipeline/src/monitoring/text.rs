@@ -51,8 +51,9 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
         };
         let _ = writeln!(
             text,
-            "ALERT {}: {} {} since {} ({}){causes}",
+            "ALERT {}{}: {} {} since {} ({}){causes}",
             alert.tail,
+            of_engine(alert.engine),
             signed(&alert.size),
             alert.unit,
             date(&alert.since),
@@ -78,13 +79,15 @@ const SIGNS: &str = "At each tail's mean conditions; positive: burns more than p
 
 fn tails(document: &MonitorDocument) -> String {
     // What is of the last flight comes first, then what is of all of them.
-    let head =
-        ["tail", "flights", "now: level", "factor", "kg/flight", "all: DSR", "std", "trend/year"];
-    let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for tail in &document.tails {
+    let mut head = vec!["tail"];
+    head.extend(document.has_several_types().then_some("type"));
+    head.extend(["flights", "now: level", "factor", "kg/flight", "all: DSR", "std", "trend/year"]);
+    let mut rows = vec![head.into_iter().map(str::to_owned).collect()];
+    for tail in document.by_news().into_iter().map(|place| &document.tails[place]) {
         let airbus = &tail.airbus;
-        rows.push(vec![
-            tail.tail.clone(),
+        let mut row = vec![tail.tail.clone()];
+        row.extend(document.has_several_types().then(|| tail.aircraft_type.clone()));
+        row.extend([
             tail.flights.len().to_string(),
             signed(&tail.deviation_percent),
             plain(airbus.entered_fuel_factor_percent(), 1),
@@ -95,6 +98,7 @@ fn tails(document: &MonitorDocument) -> String {
                 .map_or_else(|| "–".to_owned(), |std| format!("{std:.2}")),
             signed(&tail.trend_percent_per_year),
         ]);
+        rows.push(row);
     }
     aligned(&rows)
 }
@@ -161,11 +165,11 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
         );
     }
     for change in &tail.changes {
-        let engine = change.engine.map_or_else(String::new, |engine| format!(" engine {engine}"));
         let _ = writeln!(
             text,
-            "{}{engine}: {} % on {} ({} to {}), p {:.2}",
+            "{}{}: {} % on {} ({} to {}), p {:.2}",
             tail.tail,
+            of_engine(change.engine),
             signed(&change.step_percent),
             date(&change.since),
             date(&change.since_ci95[0]),
@@ -194,6 +198,10 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
             date(&event.time)
         );
     }
+}
+
+fn of_engine(engine: Option<usize>) -> String {
+    engine.map_or_else(String::new, |engine| format!(" engine {engine}"))
 }
 
 /// `+1.23 ± 0.20`.
