@@ -138,24 +138,20 @@ fn cause(tail: &TailDocument, alerts: &[AlertDocument], newest: Option<&ChangeDo
         let causes = alert.likely_causes.join(", ");
         return format!("The newest diagnosis says {causes}: its page says what to do.");
     }
-    match of_tail().find_map(|alert| alert.no_likely_cause.as_ref()) {
-        Some(reason) => format!("The newest diagnosis names no cause: {reason}."),
-        None => {
-            let older = newest.map_or_else(String::new, |change| {
-                format!(
-                    " For the change alone take the model of {} in a copy of the folder from before {}, and the reports since then.",
-                    tail.tail,
-                    day(&change.since_ci95[0])
-                )
-            });
-            format!(
-                "Find the cause: cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of {}, the initial model \
-                 of type {}, which was given to cruisefit adapt, and a new folder; the tail's own model has learnt these \
-                 flights, which hides what is found here.{older}",
-                tail.tail, tail.aircraft_type
-            )
-        }
+    if let Some(reason) = of_tail().find_map(|alert| alert.no_likely_cause.as_ref()) {
+        return format!("The newest diagnosis names no cause: {reason}.");
     }
+    let older = newest.map_or_else(String::new, |change| {
+        format!(
+            " For the change alone take the model of {} in a copy of the folder from before {}, and the reports since then.",
+            tail.tail,
+            day(&change.since_ci95[0])
+        )
+    });
+    format!(
+        "Find the cause: cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of {}, the initial model of type {},          which was given to cruisefit adapt, and a new folder; the tail's own model has learnt these flights, which hides what is          found here.{older}",
+        tail.tail, tail.aircraft_type
+    )
 }
 
 /// 100 ln(recorded/predicted) as per cent of what is predicted; a trend or a step, of what was burnt before it.
