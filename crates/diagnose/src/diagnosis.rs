@@ -15,7 +15,7 @@ use crate::judge::detection::{Detection, DetectionInput, detect};
 use crate::judge::forms::leading_forms;
 use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
-use crate::judge::posterior::{Posterior, causes, dominant};
+use crate::judge::posterior::{causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::table::is_table_off;
 use crate::judge::verdict::{Findings, advisor, level_like, named_gap, verdict};
@@ -295,7 +295,7 @@ fn conclude(
         add_floors(&mut gap, problem, &own, scale);
     }
     let classes = distances.classes(library);
-    let shown: &[Posterior] = if gap.detected { &posteriors } else { &[] };
+    let shown = &posteriors[..if gap.detected { posteriors.len() } else { 0 }];
     let advisor = advisor(problem, &distances, &classes, shown, analysis);
     let findings = Findings {
         level_like: &level_like(system, library),

@@ -147,7 +147,8 @@ fn signatures_by_hand(polar: [f64; 6], mach: f64) -> Vec<(EffectId, f64, f64, f6
     let reynolds = density * at.true_airspeed_m_s / viscosity;
     // f = 2Ω sin 50°; drift −4°: the wind blows to the left, the surface climbs.
     let coriolis = 2.0 * 7.292115e-5 * 50.0_f64.to_radians().sin();
-    let cross = at.true_airspeed_m_s * 4.0_f64.to_radians().sin();
+    // Across the nose the ground speed has the wind alone.
+    let cross = at.ground_speed_m_s * 4.0_f64.to_radians().sin();
     // Eötvös by hand on a sphere of 6371 km: V²/R + 2ΩV_east cos φ, heading 60° less 4° of drift.
     let east = 250.0 * 56.0_f64.to_radians().sin();
     let lighter = 2.0 * 7.292115e-5 * east * 50.0_f64.to_radians().cos() + 250.0 * 250.0 / 6.371e6;
