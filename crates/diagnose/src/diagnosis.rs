@@ -263,9 +263,7 @@ fn conclude(
 ) -> Result<Diagnosis, DiagnoseError> {
     let Problem { system, model, library } = problem;
     let mut outside = compete(system, analysis, library);
-    let leading = leading_columns(library, &analysis.models);
-    let distances = Distances::from_gram(system.gram(None), system.design, leading)
-        .ok_or(DiagnoseError::Degenerate)?;
+    let distances = distances_of(problem, analysis)?;
     let best = &analysis.models[0].0;
     let scale = noise_scale(analysis, best, system.gram(None).rows);
     let own = in_sample(problem, &best.hypothesis.columns, &best.sizes, scale, options.seed);
@@ -335,6 +333,13 @@ fn conclude(
         outliers: vec![],
         notes: vec![],
     })
+}
+
+/// How far effects are apart, each by the hidden parameter that leads.
+fn distances_of(problem: Problem<'_>, analysis: &Analysis) -> Result<Distances, DiagnoseError> {
+    let leading = leading_columns(problem.library, &analysis.models);
+    let Problem { system, .. } = problem;
+    Distances::from_gram(system.gram(None), system.design, leading).ok_or(DiagnoseError::Degenerate)
 }
 
 /// What the named effects add to the model; nothing where it is its table that is off.

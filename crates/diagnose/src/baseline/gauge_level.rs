@@ -111,7 +111,7 @@ mod tests {
             let nu = STUDENT_FREEDOM;
             for at in 0..400 {
                 let level = 0.01 + 1e-2 * f64::from(at) / 400.0;
-                for step in 0..120 {
+                for step in 0..160 {
                     let scale = (f64::from(step - 80) / 40.0).exp();
                     let mut ln = -0.5 * (level / GAUGE_GAIN_DEVIATION).powi(2)
                         - 0.5 * GAUGE_SCATTER_FREEDOM * (scale.powi(-2) + 2.0 * scale.ln());
