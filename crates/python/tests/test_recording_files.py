@@ -180,7 +180,7 @@ def test_without_pyarrow_the_file_and_the_package_are_named(monkeypatch, tmp_pat
         cruisefit.segment([("in memory", path.read_bytes())], mapping=RULE)
     # Text needs none.
     read = cruisefit.Segments.state.__globals__["_native"].Source("ghazi-2020-table-4", RULE)
-    assert len(read.files([tmp_path / "rows.csv"], None, 1)) == 2
+    assert len(read.files([tmp_path / "rows.csv"], 0, None, 1)) == 2
 
 
 def test_a_table_of_segments_in_parquet_needs_no_mapping(run, tmp_path, segments):

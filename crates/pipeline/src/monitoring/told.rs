@@ -5,7 +5,7 @@ use flight::Timestamp;
 use super::document::{ChangeDocument, TailDocument};
 
 impl TailDocument {
-    /// Its changes, each event once ([`told`]).
+    /// Its changes, each event once.
     #[must_use]
     pub fn told_changes(&self) -> Vec<&ChangeDocument> {
         let engines = self.flights.iter().map(|flight| flight.engines_percent.len()).max();

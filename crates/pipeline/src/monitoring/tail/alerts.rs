@@ -9,7 +9,7 @@ use crate::monitoring::document::AlertDocument;
 use crate::monitoring::told::told;
 
 impl MonitoredTail<'_> {
-    /// The rules that fire, in the order of the rules; of changes that are one event ([`told`]) one fires.
+    /// The rules that fire, in the order of the rules; of changes that are one event one fires.
     #[must_use]
     pub fn alerts(&self, options: &MonitorOptions) -> Vec<AlertDocument> {
         let changes = self.all_changes();
