@@ -149,7 +149,9 @@ fn cause(tail: &TailDocument, alerts: &[AlertDocument], newest: Option<&ChangeDo
         )
     });
     format!(
-        "Find the cause: cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of {}, the initial model of type {},          which was given to cruisefit adapt, and a new folder; the tail's own model has learnt these flights, which hides what is          found here.{older}",
+        "Find the cause: cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of {}, the initial model of type {}, \
+         which was given to cruisefit adapt, and a new folder; the tail's own model has learnt these flights, which hides what is \
+         found here.{older}",
         tail.tail, tail.aircraft_type
     )
 }
@@ -337,7 +339,7 @@ mod tests {
         assert_eq!(told.len(), 1, "{told:?}");
         assert!(told[0].starts_with("For flight planning: plan with a fuel factor"), "{told:?}");
         let told = advice(&alike.tails[1], &alike);
-        let words = "cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of N2, the initial model of type C750";
+        let words = "cruisefit diagnose REPORTS --model MODEL.ron -o DIR, with the reports of N2, the initial model of type C750, which was given to cruisefit adapt";
         assert!(told[1].contains(words), "{told:?}");
         assert!(told[1].contains("from before 2026-02-05"), "{told:?}");
     }
