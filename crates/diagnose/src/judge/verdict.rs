@@ -6,7 +6,7 @@ use flight::effect::{DrivingVariable, EffectId};
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
-use crate::judge::pair::{PairEvidence, companion};
+use crate::judge::pair::{PairEvidence, Partner, companion};
 use crate::judge::posterior::{CauseEvidence, Posterior, class_of, closed_unseen, id_of, presence};
 use crate::judge::table::TableFinding;
 use crate::library::{Library, Testable};
@@ -282,13 +282,13 @@ fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found 
     let &Findings { library, advisor, outside, posteriors, .. } = findings;
     let all: Vec<&Posterior> = posteriors.iter().collect();
     let pairs = findings.of_pairs();
-    let effects = set_of(&pairs, top);
+    let partner = pairs.partner(top);
+    let effects = set_of(&pairs, top, partner);
     let [mut class, credible] = class_and_credible(findings, top, &all, &effects);
     class.extend(&credible);
     let mut separations = separations(advisor, library, top, &class);
     let mut beside = Vec::new();
-    let partner = pairs.partner(top).zip(top.effect).filter(|_| effects.len() > 1);
-    if let Some((partner, leading)) = partner {
+    if let Some((partner, leading)) = partner.zip(top.effect) {
         let companion = companion(&pairs, outside, &effects, (partner, leading));
         let found = (partner.column, partner.size);
         separations.extend(apart(advisor, library, found, &companion.class));
@@ -319,8 +319,8 @@ fn credible<'a>(posteriors: &[&'a Posterior]) -> impl Iterator<Item = &'a Poster
 }
 
 /// The effects that act together, where a pair is more probable than not; else the top effect.
-fn set_of(findings: &PairEvidence<'_>, top: &Posterior) -> Vec<EffectId> {
-    let PairEvidence { analysis, library, .. } = *findings;
+fn set_of(pairs: &PairEvidence<'_>, top: &Posterior, partner: Option<Partner>) -> Vec<EffectId> {
+    let PairEvidence { analysis, library, .. } = *pairs;
     let mut set = vec![id_of(library, top.effect)];
     let (best, probability) = &analysis.models[0];
     let scatter = best.hypothesis.flight_scatter_percent;
@@ -332,7 +332,7 @@ fn set_of(findings: &PairEvidence<'_>, top: &Posterior) -> Vec<EffectId> {
                 set.push(id);
             }
         }
-    } else if let Some(partner) = findings.partner(top) {
+    } else if let Some(partner) = partner {
         set.push(library.effects[library.columns[partner.column].effect].id);
     }
     set
