@@ -151,6 +151,10 @@ pub(crate) struct GuideArgs {
     /// ICAO type designator (A320, B738, …)
     #[arg(long = "type", value_name = "TYPE", required_unless_present = "list")]
     pub(crate) type_code: Option<String>,
+    /// Number of engines of the aircraft: a public model of another number is refused. It knows no engine options, so that no
+    /// name of an engine is taken
+    #[arg(long, value_name = "NUMBER", conflicts_with = "list")]
+    pub(crate) engines: Option<String>,
     /// List the types, and those that another one represents
     #[arg(long, conflicts_with = "type_code")]
     pub(crate) list: bool,

@@ -29,6 +29,9 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
             ),
         });
     };
+    if let Some(engines) = &arguments.engines {
+        check_engines(engines, code, parameters)?;
+    }
     let bad = |reason: String| Failure::BadArgument { argument: "--type", reason };
     let code = code.to_ascii_uppercase();
     let guide =
@@ -45,6 +48,25 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
     write_atomically(&aircraft_path, aircraft.as_bytes())?;
     write_atomically(&guide_path, guide.to_csv().as_bytes())?;
     Ok(Outcome::with_figures(text(&guide, parameters, folder), figures(&guide, parameters, folder)))
+}
+
+/// Refuses a public model of another number of engines.
+fn check_engines(engines: &str, code: &str, parameters: &Parameters) -> Result<(), Failure> {
+    let bad = |reason: String| Failure::BadArgument { argument: "--engines", reason };
+    let Ok(number) = engines.parse::<u8>() else {
+        return Err(bad(format!(
+            "expected the number of engines, found {engines:?}: the public model knows no engine options; how far a tail's engines \
+             are from it, `cruisefit adapt` finds from flights"
+        )));
+    };
+    if number != parameters.engines {
+        return Err(bad(format!(
+            "the public model of {} has {} engines, not {number}",
+            code.to_ascii_uppercase(),
+            parameters.engines
+        )));
+    }
+    Ok(())
 }
 
 fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {

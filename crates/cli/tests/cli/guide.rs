@@ -41,6 +41,22 @@ fn the_list_and_an_unknown_type() {
         .says("no public model of C172");
 }
 
+/// The public model has a number of engines, and no engine options.
+#[test]
+fn another_number_of_engines_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("a320");
+    let guide = |engines: &str| {
+        let output = output.to_str().unwrap();
+        cruisefit(&["guide", "--type", "A320", "--engines", engines, "-o", output])
+    };
+    guide("4").expect(2).says("the public model of A320 has 2 engines, not 4");
+    guide("CFM56-5B4/P").expect(2).says("knows no engine options");
+    assert!(!output.exists());
+    guide("2").expect(0);
+    assert!(output.join("guide.csv").exists());
+}
+
 /// A P-8 is represented by a 737-800, which has as many engines; a C-17 by a 767, which has not.
 #[test]
 fn a_represented_type_is_said_to_be_another_aircraft() {
