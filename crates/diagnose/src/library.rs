@@ -184,7 +184,12 @@ fn lacking(
     {
         return Some(vec![NeededInput::FuelFlowPerEngine]);
     }
-    let missing = points.iter().filter(|point| point.lacks(id).is_some()).count();
+    // An assumed temperature can be predicted with; nothing can be learnt of it.
+    let temperature = NeededInput::StaticAirTemperature;
+    let is_untold =
+        |point: &EffectPoint| id.entry().needs.contains(&temperature) && !point.has(temperature);
+    let missing =
+        points.iter().filter(|point| point.lacks(id).is_some() || is_untold(point)).count();
     if (missing as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64 {
         return None;
     }

@@ -2,11 +2,11 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{
-    Baseline, BaselineRecord, DiagnoseError, Diagnosis, FlightRecord, Input, LeftOutReason,
+    Baseline, BaselineRecord, DiagnoseError, Diagnosis, FlightRecord, Input, LeftOutReason, Note,
     Options, Verdict, diagnose,
 };
 use effects::ExtendedModel;
-use flight::effect::EffectId;
+use flight::effect::{EffectId, NeededInput};
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
 
 /// What the fleet recorded, as the diagnosis takes it.
@@ -103,6 +103,36 @@ fn missing_optional_columns_are_said_and_the_rest_is_found() {
         assert!(lacking.contains(&effect), "{effect} in {lacking:?}");
     }
     assert!(found.verdict.class().contains(&EffectId::ZeroLiftDrag), "{:?}", found.verdict);
+}
+
+/// Of a temperature that nobody recorded nothing can be learnt, and anti-ice bleed that is not recorded is said to be guessed.
+#[test]
+fn what_stands_for_a_recording_is_said() {
+    let model = exact_model();
+    let mut fleet = small(60, 10);
+    for (flight, segments) in fleet.flights.iter_mut().enumerate() {
+        for segment in segments {
+            segment.temperature_assumed = true;
+            segment.means.anti_ice = (flight % 2 == 0).then_some(0.0);
+        }
+    }
+    let found = run(&model, &fleet);
+    let lacking: Vec<EffectId> = found.not_testable.iter().map(|n| n.effect).collect();
+    assert_eq!(lacking, [EffectId::TsfcTemperatureExponent, EffectId::TemperatureBias]);
+    for entry in &found.not_testable {
+        assert_eq!(entry.needs, [NeededInput::StaticAirTemperature]);
+    }
+    let note = Note::AntiIceByTemperature { segments: 300, of_segments: 600 };
+    assert!(found.notes.contains(&note), "{:?}", found.notes);
+
+    for segment in fleet.flights.iter_mut().flatten() {
+        segment.temperature_assumed = false;
+        segment.means.anti_ice = Some(0.0);
+    }
+    let found = run(&model, &fleet);
+    assert!(found.not_testable.is_empty(), "{:?}", found.not_testable);
+    let is_guessed = |note: &&Note| matches!(note, Note::AntiIceByTemperature { .. });
+    assert_eq!(found.notes.iter().find(is_guessed), None);
 }
 
 #[test]

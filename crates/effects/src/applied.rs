@@ -214,7 +214,7 @@ fn lacks(needed: NeededInput, point: &FlightPoint) -> Option<&'static str> {
         NeededInput::TrueHeading => (point.true_heading.is_some(), "true_heading_deg"),
         NeededInput::Roll => (false, "roll"),
         NeededInput::Drift => (false, "drift"),
-        NeededInput::FuelFlowPerEngine => (true, ""),
+        NeededInput::FuelFlowPerEngine | NeededInput::StaticAirTemperature => (true, ""),
     };
     (!there).then_some(name)
 }

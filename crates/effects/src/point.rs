@@ -14,6 +14,8 @@ pub struct EffectPoint {
     pub pressure_altitude_m: f64,
     /// Static air temperature, K.
     pub static_air_temperature_k: f64,
+    /// Whether static air temperature is assumed and not recorded.
+    pub is_temperature_assumed: bool,
     /// Mach number.
     pub mach: f64,
     /// True airspeed, m/s.
@@ -64,6 +66,7 @@ impl EffectPoint {
             date_s,
             pressure_altitude_m: point.pressure_altitude.to_meters(),
             static_air_temperature_k: sat.to_kelvin(),
+            is_temperature_assumed: false,
             mach: point.mach.value(),
             true_airspeed_m_s,
             ground_speed_m_s: true_airspeed_m_s,
@@ -84,11 +87,14 @@ impl EffectPoint {
     /// The point of a segment. `engines` is the aircraft's number of engines.
     #[must_use]
     pub fn from_segment(segment: &Segment, engines: usize) -> Self {
-        Self::from_means(&segment.means, segment.identity.start_s(), engines)
+        Self {
+            is_temperature_assumed: segment.temperature_assumed,
+            ..Self::from_means(&segment.means, segment.identity.start_s(), engines)
+        }
     }
 
     /// The point of a segment's means; its flight started `start_s` s since 1970. `engines` is the aircraft's number of
-    /// engines. There is no deck here, so the thrust indicated by N2 stays unset.
+    /// engines. There is no deck here, so the thrust indicated by N2 stays unset; temperature counts as recorded.
     #[must_use]
     pub fn from_means(means: &SegmentMeans, start_s: f64, engines: usize) -> Self {
         let engines = engines.clamp(1, MAXIMUM_ENGINES);
@@ -104,6 +110,7 @@ impl EffectPoint {
             date_s: start_s + means.time_s,
             pressure_altitude_m: means.pressure_altitude_m,
             static_air_temperature_k: means.static_air_temperature_k,
+            is_temperature_assumed: false,
             mach: means.mach,
             true_airspeed_m_s: means.true_airspeed_m_s,
             ground_speed_m_s: means.ground_speed_m_s,
@@ -132,16 +139,18 @@ impl EffectPoint {
         indispensable.copied().find(|needed| !self.has(*needed))
     }
 
-    const fn has(&self, input: NeededInput) -> bool {
+    /// Whether the input is recorded; fuel flow engine by engine always is, as equal shares.
+    #[must_use]
+    pub const fn has(&self, input: NeededInput) -> bool {
         match input {
             NeededInput::CenterOfGravity => self.center_of_gravity_percent_mac.is_some(),
             NeededInput::Roll => self.roll_squared_deg2.is_some(),
-            // Equal shares where engines are not recorded apart.
             NeededInput::FuelFlowPerEngine => true,
             NeededInput::AntiIce => self.anti_ice.is_some(),
             NeededInput::Latitude => self.latitude_deg.is_some(),
             NeededInput::TrueHeading => self.true_heading_deg.is_some(),
             NeededInput::Drift => self.drift_deg.is_some(),
+            NeededInput::StaticAirTemperature => !self.is_temperature_assumed,
         }
     }
 }

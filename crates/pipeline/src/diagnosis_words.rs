@@ -314,6 +314,10 @@ pub fn note_words(note: &Note) -> String {
             "N2 of {silent} of {recorded} segments stands for no thrust near the predicted one: \
              tsfc_throttle is over corrected thrust there"
         ),
+        Note::AntiIceByTemperature { segments, of_segments } => format!(
+            "anti-ice bleed is not recorded in {segments} of {of_segments} segments: anti_ice_bleed takes it as on above −40 °C \
+             there"
+        ),
         Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
         Note::Outliers { segments, of_segments, flights } => {
             let whole = match flights {

@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use flight::column::Column;
-use flight::effect::{EffectEntry, EffectId, EffectSign, HiddenParameter, TypicalSize};
+use flight::effect::{
+    EffectEntry, EffectId, EffectSign, HiddenParameter, NeededInput, TypicalSize,
+};
 use segmenter::TrimCriteria;
 
 mod outputs;
@@ -140,7 +142,12 @@ fn effect(id: EffectId) -> String {
         EffectSign::Spread => "none: the size is a standard deviation",
     };
     let _ = writeln!(text, "Sign:        {sign}");
-    let needs: Vec<&str> = entry.needs.iter().map(|needed| needed.name()).collect();
+    let in_words = |needed: &NeededInput| match needed {
+        NeededInput::AntiIce => "A/I (not recorded: taken as on above −40 °C)",
+        NeededInput::StaticAirTemperature => "SAT (recorded, not assumed)",
+        other => other.name(),
+    };
+    let needs: Vec<&str> = entry.needs.iter().map(in_words).collect();
     let needs = if needs.is_empty() { "the required columns".to_owned() } else { needs.join(", ") };
     let _ = writeln!(text, "Needs:       {needs}");
     let driven: Vec<&str> = entry.driven_by.iter().map(|variable| variable.name()).collect();

@@ -14,6 +14,13 @@ pub enum Note {
         /// Segments with N2.
         recorded: usize,
     },
+    /// Anti-ice bleed is not recorded in some segments: static air temperature above −40 °C stands for it there.
+    AntiIceByTemperature {
+        /// Segments where it is not recorded.
+        segments: usize,
+        /// Segments that the model can predict.
+        of_segments: usize,
+    },
     /// References of effects are the means of these flights.
     ReferencesAreMeans,
     /// Whitened residuals have heavy tails: segments are weighed.

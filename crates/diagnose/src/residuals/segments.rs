@@ -95,7 +95,10 @@ fn inside<'a>(
         for (segment, place) in flight.segments.iter().zip(&mut places) {
             let start_s = segment.identity.start_s();
             let found = model.corrected_means(&segment.means).and_then(|means| {
-                let point = EffectPoint::from_means(&means, start_s, engines);
+                let point = EffectPoint {
+                    is_temperature_assumed: segment.temperature_assumed,
+                    ..EffectPoint::from_means(&means, start_s, engines)
+                };
                 let (known, response) = model.known_point(&point)?;
                 Ok(Inside { means, rows: &segment.rows, point, known, response, place })
             });
@@ -325,6 +328,14 @@ impl<'a> PreparedFlights<'a> {
         let looked_for = library.effects.iter().any(|e| e.id == EffectId::TsfcThrottle);
         (self.channels.n2 && looked_for && silent > 0)
             .then_some(Note::N2WithoutThrust { silent, recorded })
+    }
+
+    /// Where it is not recorded whether bleed is on, and its effect is looked for.
+    pub(crate) fn anti_ice_note(&self, library: &Library) -> Option<Note> {
+        let of_segments = self.segments.len();
+        let segments = self.segments.iter().filter(|row| row.point.anti_ice.is_none()).count();
+        let looked_for = library.effects.iter().any(|e| e.id == EffectId::AntiIceBleed);
+        (looked_for && segments > 0).then_some(Note::AntiIceByTemperature { segments, of_segments })
     }
 
     /// Values that were recorded in a flight: channels of its segments, and gauges. A channel that is not recorded in a

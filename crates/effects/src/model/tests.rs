@@ -46,6 +46,7 @@ fn point(mach: f64) -> EffectPoint {
         date_s: 1.5e9,
         pressure_altitude_m: 12_000.0,
         static_air_temperature_k: sat_k,
+        is_temperature_assumed: false,
         mach,
         true_airspeed_m_s: mach * (1.4 * 287.05287 * sat_k).sqrt(),
         ground_speed_m_s: 250.0,

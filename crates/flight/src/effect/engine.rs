@@ -57,7 +57,7 @@ pub(super) const TSFC_TEMPERATURE_EXPONENT: EffectEntry = EffectEntry {
     unit: "exponent",
     typical: TypicalSize::Absolute(0.20),
     sign: EffectSign::Either,
-    needs: &[],
+    needs: &[NeededInput::StaticAirTemperature],
     hidden: HiddenParameter::None,
     driven_by: &[
         DrivingVariable::StaticAirTemperature,

@@ -108,15 +108,18 @@ pub enum NeededInput {
     TrueHeading,
     /// `DRIFT`.
     Drift,
+    /// `SAT`; where it is assumed, effects that depend on it are predicted with what is assumed, and not tested.
+    StaticAirTemperature,
 }
 
 impl NeededInput {
     /// Whether there is a substitute for the input where it is not recorded, so that effects that depend on it can
-    /// still be predicted and tested: static air temperature above −40 °C for anti-ice bleed (our choice: bleed is used
-    /// in visible moisture, of which there is little below).
+    /// still be predicted: static air temperature above −40 °C for anti-ice bleed (our choice: bleed is used in visible
+    /// moisture, of which there is little below), which is tested too; and the temperature that is assumed where none is
+    /// recorded, of which recordings say nothing.
     #[must_use]
     pub const fn has_substitute(self) -> bool {
-        matches!(self, Self::AntiIce)
+        matches!(self, Self::AntiIce | Self::StaticAirTemperature)
     }
 
     /// The column's name in reports.
@@ -130,6 +133,7 @@ impl NeededInput {
             Self::Latitude => "LAT",
             Self::TrueHeading => "HDG",
             Self::Drift => "DRIFT",
+            Self::StaticAirTemperature => "SAT",
         }
     }
 }

@@ -77,7 +77,7 @@ pub(super) const TEMPERATURE_BIAS: EffectEntry = EffectEntry {
     unit: "K",
     typical: TypicalSize::Absolute(2.0),
     sign: EffectSign::Either,
-    needs: &[],
+    needs: &[NeededInput::StaticAirTemperature],
     hidden: HiddenParameter::None,
     driven_by: &[],
     perturbation: "SAT reads θ high, and TAS with it",
