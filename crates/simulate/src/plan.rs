@@ -122,7 +122,8 @@ pub struct Scatter {
     pub heating_value_percent: f64,
     /// Standard deviation of true minus recorded zero-fuel mass, % of maximum zero-fuel mass.
     pub zero_fuel_mass_percent: f64,
-    /// Standard deviation of an engine's thrust about the mean, %.
+    /// Standard deviation of what an engine's thrust is drawn with, %, before all are divided by their mean: √(1 − 1/engines) of it
+    /// is left about the mean, 0.71 for two engines.
     pub throttle_split_percent: f64,
     /// Standard deviation of the roll held in straight flight, degrees.
     pub roll_trim_deg: f64,

@@ -63,8 +63,10 @@ pub fn openap(model: &ModelFile, mach: Option<f64>) -> Result<OpenapPolar, Opena
     let informed = informed(model);
     let columns = grid.y().len();
     let at = grid.y().breakpoints().partition_point(|breakpoint| *breakpoint <= mach);
-    // Both columns about the Mach number; at the last one, that one alone.
-    let about = [at.saturating_sub(1), at.min(columns - 1)];
+    // Both columns about the Mach number; at one of them, that one alone.
+    let below = at.saturating_sub(1);
+    let is_at_below = grid.y().breakpoints()[below] >= mach;
+    let about = [below, if is_at_below { below } else { at.min(columns - 1) }];
     let mut lift_coefficients = grid
         .x()
         .breakpoints()
