@@ -120,6 +120,7 @@ impl Baseline {
         table: Option<TableUncertainty>,
     ) -> Result<Self, BaselineLengthError> {
         let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0) };
+        baseline.scale_smooth();
         let check = |quantity, found, expected| {
             if found == expected {
                 Ok(())
@@ -320,6 +321,12 @@ impl Baseline {
     #[must_use]
     pub fn flown(&self, variable: Variable) -> Option<(f64, f64)> {
         self.parts.smooth.iter().find(|one| one.variable() == variable).map(Smooth::flown)
+    }
+
+    /// Tells the smooth functions by how much flights have scaled them.
+    pub(crate) fn scale_smooth(&mut self) {
+        let [scale, _] = self.parts.scales;
+        self.parts.smooth.iter_mut().for_each(|one| one.scale_by(scale));
     }
 
     /// Prior variance of one smooth function.

@@ -174,6 +174,9 @@ deciding_numbers! {
         REMAINDER_SMOOTH_DEVIATION: f64 = 0.01, "of fuel flow",
             "prior standard deviation of the remainder's bends along a variable, before flights scale it",
             OurChoice "What a table over two variables leaves is of the order of a per cent; the data scale it.";
+        LEAST_SCALE_BEYOND_MACH: f64 = 1.0, "",
+            "least factor by which flights scale bends, beyond the Mach numbers that they flew",
+            OurChoice "The prior's own: how little a model bends where flights were does not say where the drag rise begins.";
         REMAINDER_PRODUCT_DEVIATION: f64 = 0.005, "of fuel flow",
             "prior standard deviation of a product of two variables a length from their middles, before flights scale it",
             OurChoice "Half of that of a function of one variable; the data scale it.";

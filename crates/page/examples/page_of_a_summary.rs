@@ -27,6 +27,7 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
         mean_error_half_width95_percent: None,
         interval95_coverage: None,
         mean_error_within_percent: None,
+        beyond_flights: None,
     }
 }
 

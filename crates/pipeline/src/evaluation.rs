@@ -98,8 +98,10 @@ impl TailResult {
         summary.interval95_coverage = match data.model.whole(predicts) {
             Some(whole) => {
                 let found = announced_by_whole(&whole, &data);
-                summary.mean_error_within_percent = found.map(|(_, within)| within);
-                found.map(|(coverage, _)| coverage)
+                summary.mean_error_within_percent =
+                    found.as_ref().map(|one| one.mean_within_percent);
+                summary.beyond_flights = found.as_ref().map(|one| one.beyond_flights);
+                found.map(|one| one.coverage)
             }
             None => coverage(&data.model, &data.segments),
         };
@@ -299,6 +301,7 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
         refits: None,
         interval95_coverage: None,
         mean_error_within_percent: None,
+        beyond_flights: None,
         fuel_flow_error_percent: ErrorsSummary { before: statistics(before), after: None },
         mean_error_half_width95_percent: mean_half_width95_by_flight(&by_flight(data, before)),
     }
@@ -321,13 +324,22 @@ fn state_without_errors(
     model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
 }
 
-/// Share of segments whose error lies within the interval that the whole model states for them, and half the width of the one
-/// that it states for the mean over these flights, %.
+/// What the whole model states of segments, and how it holds.
+struct Announced {
+    /// Share of segments whose error lies within their interval.
+    coverage: f64,
+    /// Half the width of the interval of the mean over these flights, %.
+    mean_within_percent: f64,
+    /// Segments beyond what the learnt flights flew.
+    beyond_flights: usize,
+}
+
+/// What the whole model states of these segments; `None` where it predicts none.
 ///
 /// ```text
 /// var(mean) = var of the model's mean error + Σ_f (n_f/n)²·(var_f + mean var_s/n_f),   f new flights, s their segments
 /// ```
-fn announced_by_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<(f64, f64)> {
+fn announced_by_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<Announced> {
     let of_flight = |segments: &[Segment]| -> Vec<SegmentHeld> {
         let held = |segment| SegmentHeld::new(whole, &data.model.initial, segment);
         segments.iter().filter_map(held).collect()
@@ -348,7 +360,11 @@ fn announced_by_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<(f64, f
             - WholePrediction::variance_of_mean(predictions());
         variance += (flight.len() as f64 / count as f64).powi(2) * own;
     }
-    Some((inside.count() as f64 / count as f64, 100.0 * NORMAL_95 * variance.sqrt()))
+    Some(Announced {
+        coverage: inside.count() as f64 / count as f64,
+        mean_within_percent: 100.0 * NORMAL_95 * variance.sqrt(),
+        beyond_flights: all().filter(|held| held.prediction.beyond_flights).count(),
+    })
 }
 
 /// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or

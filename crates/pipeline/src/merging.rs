@@ -78,11 +78,28 @@ pub enum MergeError {
 }
 
 /// Puts together what models have learnt: by learning all flights again where all of their segments are at hand, otherwise by
-/// adding sums. The order of the models does not matter, up to rounding of sums.
+/// adding sums. The order of the models does not matter.
 ///
 /// # Errors
 /// [`MergeError`], with the place of the model that it is about.
 pub fn merge(parts: Vec<Part>) -> Result<(ModelFile, Merging), (usize, MergeError)> {
+    // What is wrong is told in the order given; sums are rounded in that of flying.
+    let mut order: Vec<&Part> = parts.iter().collect();
+    sum(&order)?;
+    order.sort_by_cached_key(|part| first_flight(&part.model));
+    let merged = sum(&order)?;
+    let remainder = remainder_of(&parts);
+    let finish = match flights_of(parts) {
+        Some(flights) => {
+            learn_again(merged, flights, remainder).map(|model| (model, Merging::LearntAgain))
+        }
+        None => settle(merged).map(|model| (model, Merging::Added)),
+    };
+    finish.map_err(|error| (0, error))
+}
+
+/// Models with what they have learnt added up, one after the other.
+fn sum(parts: &[&Part]) -> Result<ModelFile, (usize, MergeError)> {
     let Some((first, others)) = parts.split_first() else {
         return Err((0, MergeError::NothingLearnt));
     };
@@ -93,14 +110,16 @@ pub fn merge(parts: Vec<Part>) -> Result<(ModelFile, Merging), (usize, MergeErro
     for (place, other) in others.iter().enumerate() {
         add(&mut merged, &other.model).map_err(|error| (place + 1, error))?;
     }
-    let remainder = remainder_of(&parts);
-    let finish = match flights_of(parts) {
-        Some(flights) => {
-            learn_again(merged, flights, remainder).map(|model| (model, Merging::LearntAgain))
-        }
-        None => settle(merged).map(|model| (model, Merging::Added)),
+    Ok(merged)
+}
+
+/// START, tail and number of the first flight in a model's ledger.
+fn first_flight(model: &ModelFile) -> Option<(Option<Timestamp>, String, String)> {
+    let entries = model.learnt.iter().flat_map(|learnt| &learnt.ledger);
+    let key = |entry: &LedgerEntry| {
+        (entry.start.parse::<Timestamp>().ok(), entry.tail.clone(), entry.flight.clone())
     };
-    finish.map_err(|error| (0, error))
+    entries.map(key).min()
 }
 
 /// All flights with their segments; `None` where those of one are not at hand, or not all of them.

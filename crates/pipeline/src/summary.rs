@@ -124,6 +124,10 @@ pub struct TailSummary {
     /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_error_within_percent: Option<f64>,
+    /// Segments beyond all that the learnt flights flew in Mach number, lift coefficient, pressure altitude, thrust, deviation from
+    /// the ISA or mass; absent where nothing beyond a table was learnt.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond_flights: Option<usize>,
 }
 
 /// The error of the initial table, and of the final one.
@@ -184,6 +188,16 @@ impl Summary {
                 "Inside 95 %: share of the segments within the stated 95 % interval; mean within: half the 95 % interval \
                  of the mean error of such flights.\n",
             );
+        }
+        for tail in &self.tails {
+            if let Some(beyond) = tail.beyond_flights.filter(|beyond| *beyond > 0) {
+                let _ = writeln!(
+                    text,
+                    "{}: {beyond} of {} lie beyond what the learnt flights flew: predictions continue what those showed.",
+                    tail.tail,
+                    counted(tail.segments, "segment")
+                );
+            }
         }
         let lists = self.tails.iter().map(|tail| tail.not_evaluated.as_slice());
         let flights = self.tails.iter().map(|tail| tail.flights).sum();

@@ -76,6 +76,17 @@ fn models_out_of_their_folders_add_up() {
     for (one, other) in drag(&merged, scratch).iter().zip(drag(&turned, scratch)) {
         assert!((one - other).abs() <= 1e-9 * other, "order: {one} {other}");
     }
+    let thirds = [0, 1, 2].map(|rest| alone(&format!("third-{rest}"), &|k| k % 3 == rest));
+    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    let texts = orders.map(|order| {
+        let merged = scratch.join("thirds.ron");
+        let _ = std::fs::remove_file(&merged);
+        merge(&order.map(|k: usize| &thirds[k]), &merged).expect(0);
+        std::fs::read_to_string(merged).unwrap()
+    });
+    for text in &texts[1..] {
+        assert_eq!(text, &texts[0], "sums are rounded in the order of flying");
+    }
     // Outlier weights are judged against what a model knows: the two halves know less than the whole.
     for (merged, whole) in drag(&merged, scratch).iter().zip(drag(&whole, scratch)) {
         assert!((merged - whole).abs() <= 3e-3 * whole, "{merged} {whole}");

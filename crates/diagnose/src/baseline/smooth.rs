@@ -7,7 +7,7 @@ use crate::math::cholesky::Cholesky;
 use crate::math::curve::{Curve, Pieces};
 use crate::math::lanes::{LANES, Lanes, add, add_product, each, map};
 use crate::math::vector_ln_exp::exp;
-use crate::priors::{SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
+use crate::priors::{LEAST_SCALE_BEYOND_MACH, SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
 use faer::Mat;
 
 /// Share of a knot's variance that keeps the kernel's matrix positive definite in doubles.
@@ -53,6 +53,13 @@ struct SmoothText {
     /// First and last knot, in lengths from the middle.
     knots: (f64, f64),
     count: usize,
+    /// Growth of what is not known beyond the flown values, of the process' variance per cube of lengths.
+    #[serde(skip, default = "growth_beyond")]
+    growth: f64,
+}
+
+const fn growth_beyond() -> f64 {
+    GROWTH_BEYOND
 }
 
 impl SmoothText {
@@ -81,7 +88,7 @@ impl SmoothText {
     /// Share of the process' variance that terms which hold so much of it do not hold: more beyond what was flown.
     fn left_of_variance(&self, z: f64, held: f64) -> f64 {
         let beyond = self.beyond(z);
-        (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
+        (1.0 - held).max(self.growth * beyond * beyond * beyond).max(0.0)
     }
 }
 
@@ -124,8 +131,17 @@ impl Smooth {
             length: length * stretch,
             knots: (center - half, center + half),
             count: intervals as usize + 3,
+            growth: GROWTH_BEYOND,
         };
         Self::try_from(text).ok()
+    }
+
+    /// Tells it the factor that flights found on the process' prior standard deviation. Beyond the Mach numbers that were flown what
+    /// is not known grows by that of the prior, if that is more: flights below a drag rise say nothing of where it begins, and
+    /// nothing in it of what lies below.
+    pub(crate) fn scale_by(&mut self, scale: f64) {
+        let least = if self.variable() == Variable::Mach { LEAST_SCALE_BEYOND_MACH } else { 0.0 };
+        self.text.growth = GROWTH_BEYOND * (least / scale).max(1.0).powi(2);
     }
 
     pub(crate) const fn variable(&self) -> Variable {

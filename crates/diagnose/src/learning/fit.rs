@@ -46,11 +46,12 @@ impl Baseline {
         self.set_noise(0, &fuel);
         let [smooth, products, _] = fuel.posterior.dials.scales;
         self.parts.scales = [smooth, products];
+        self.scale_smooth();
         self.parts.outliers = fuel.weights.outliers();
         let smooth = self.parts.scales[0].powi(2);
         let left_out = |row: usize| unheld[row].smooth * smooth + unheld[row].drag;
         self.parts.interval_factor =
-            factor_by_unseen(&rows, &fuel.unseen, &fuel.posterior.dials, left_out);
+            factor_by_unseen(&rows, &fuel.unseen, (&fuel.posterior.dials, &fuel.weights), left_out);
 
         for at in 1..=layout.contrasts.len() {
             let rows = ChannelRows::of_contrast(&deviations, &layout, data, at);

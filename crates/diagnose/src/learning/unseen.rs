@@ -24,8 +24,9 @@ pub(super) struct Unseen {
     within: f64,
     /// The same of what a flight has in common, at a factor of 1.
     between: f64,
-    /// Share of the flight that counts.
+    /// Share of the flight that counts, and its weight.
     share: f64,
+    weight: f64,
     /// Errors of its values, each with the model's variance and the row that it is of.
     values: Vec<(f64, f64, usize)>,
 }
@@ -105,6 +106,7 @@ pub(super) fn unseen(
                 within: within * own / square,
                 between: common,
                 share,
+                weight: weights.groups[group],
                 values,
             })
         })
@@ -143,19 +145,23 @@ pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
 /// factor = q/1.96,  q the 95 % quantile of |error|/announced over unseen values
 /// ```
 ///
-/// A flight of which less than half counts is too old to say what comes. With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in addition.
+/// What is announced of an outlier is what it was learnt with: its noise divided by its weight. One absurd flight of ten would be
+/// the quantile otherwise, and make every interval as wide as itself. A flight of which less than half counts is too old to say
+/// what comes. With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in
+/// addition.
 pub(super) fn factor_by_unseen(
     rows: &ChannelRows,
     unseen: &[Unseen],
-    dials: &Dials,
+    (dials, weights): (&Dials, &Weights),
     left_out: impl Fn(usize) -> f64,
 ) -> f64 {
     let (within, between) = (dials.within.powi(2), dials.between.powi(2));
     let recent = unseen.iter().filter(|flight| flight.share >= 0.5);
-    let values = recent.flat_map(|flight| &flight.values);
-    let distances = values
-        .map(|&(error, of_model, row)| {
-            let noise = within * rows.variance[row] + between * rows.common_variance(row);
+    let distances = recent
+        .flat_map(|flight| flight.values.iter().map(move |value| (flight.weight, value)))
+        .map(|(weight, &(error, of_model, row))| {
+            let own = within * rows.variance[row] / weights.rows[row];
+            let noise = own + between * rows.common_variance(row) / weight;
             error.abs() / (of_model + noise + left_out(row)).sqrt()
         })
         .collect();
