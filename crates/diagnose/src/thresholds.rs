@@ -40,6 +40,9 @@ deciding_numbers! {
         USUAL_DISTANCE: f64 = 2.5, "standard deviations",
             "distance from what is learnt up to which a segment or flight counts whole",
             OurChoice "Of normal errors 1.2 % lie beyond: clean flights are learnt as if nothing were weighed.";
+        ABSURD: f64 = 0.25, "",
+            "weight of a value or flight up to which it says nothing of stated intervals",
+            OurChoice "Five standard deviations from what was learnt: no ordinary flight of the aircraft, which is what intervals are of.";
         ORDINARY_SEGMENTS: f64 = 20.0, "segments",
             "ordinary segments that count in addition where unseen ones judge stated intervals",
             OurChoice "One of twenty lies outside a 95 % interval: fewer say nothing of it.";

@@ -9,7 +9,8 @@ use crate::learning::rows::ChannelRows;
 use crate::math::quantile::{MEDIAN_TO_DEVIATION, median};
 use crate::thresholds::{FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, USUAL_DISTANCE};
 
-/// Largest change of a weight at which they count as settled. Our choice: 0.8 instead of 0.75 changes nothing.
+/// Largest change of a weight, as a share of it, at which they count as settled: that of an absurd flight is small, and the scatter
+/// between flights that it makes goes with its share. Our choice: 0.8 instead of 0.76 changes nothing.
 const SETTLED: f64 = 0.05;
 
 /// Weights of every value, and of what the values of each flight have in common.
@@ -25,17 +26,26 @@ impl Weights {
         Self { rows: vec![1.0; rows.variance.len()], groups: vec![1.0; rows.groups.len()] }
     }
 
-    /// Before anything is fitted: how far a value lies from the median.
+    /// Before anything is fitted: how far a value lies from the median, or from that of its flight where the flight as a whole lies
+    /// far from all. Scatter between flights that is sought with one such flight among them holds it, and then it is not far.
     pub(super) fn before(rows: &ChannelRows) -> Self {
         let residuals = rows.residual();
         let middle = median(residuals.to_vec());
-        let distance = median(residuals.iter().map(|value| (value - middle).abs()).collect());
-        let scale = (MEDIAN_TO_DEVIATION * distance).max(LEAST_MEDIAN_DISTANCE);
-        let of_rows = residuals
-            .iter()
-            .map(|value| weight((value - middle) / scale, FARTHEST_FROM_MEDIAN))
-            .collect();
-        Self { rows: of_rows, ..Self::of_one(rows) }
+        let scale = scale_about(middle, residuals);
+        let medians: Vec<f64> =
+            rows.groups.iter().map(|range| median(residuals[range.clone()].to_vec())).collect();
+        let scale_of_flights = scale_about(middle, &medians);
+        let mut weights = Self::of_one(rows);
+        for (group, range) in rows.groups.iter().enumerate() {
+            let of_flight =
+                weight((medians[group] - middle) / scale_of_flights, FARTHEST_FROM_MEDIAN);
+            weights.groups[group] = of_flight;
+            let about = if of_flight < 1.0 { medians[group] } else { middle };
+            for row in range.clone() {
+                weights.rows[row] = weight((residuals[row] - about) / scale, FARTHEST_FROM_MEDIAN);
+            }
+        }
+        weights
     }
 
     /// Against what is left of the values after a fit with the weights so far.
@@ -63,7 +73,8 @@ impl Weights {
     /// Whether none of them moved.
     pub(super) fn settled(&self, before: &Self) -> bool {
         let pairs = self.rows.iter().zip(&before.rows);
-        pairs.chain(self.groups.iter().zip(&before.groups)).all(|(a, b)| (a - b).abs() <= SETTLED)
+        let mut pairs = pairs.chain(self.groups.iter().zip(&before.groups));
+        pairs.all(|(a, b)| (a - b).abs() <= SETTLED * a.max(*b))
     }
 
     /// Values that count less than half.
@@ -72,10 +83,25 @@ impl Weights {
     }
 }
 
-/// 1 up to a usual distance, then falling with its square.
+/// Standard deviation of ordinary values about their middle, by the median distance.
+fn scale_about(middle: f64, values: &[f64]) -> f64 {
+    let distance = median(values.iter().map(|value| (value - middle).abs()).collect());
+    (MEDIAN_TO_DEVIATION * distance).max(LEAST_MEDIAN_DISTANCE)
+}
+
+/// 1 up to a usual distance, then falling with its square, and with its fourth power from twice the usual distance on.
+///
+/// A value that counts by the square of its distance adds 2.5² = 6.25 to the sum that noise is found from, however far it lies:
+/// as much as all of ten flights, of which a dozen columns take up most. An absurd one must add nothing.
 fn weight(distance: f64, usual: f64) -> f64 {
     let share = usual / distance.abs();
-    if share >= 1.0 || share.is_nan() { 1.0 } else { share * share }
+    if share >= 1.0 || share.is_nan() {
+        1.0
+    } else if share >= 0.5 {
+        share * share
+    } else {
+        4.0 * share.powi(4)
+    }
 }
 
 #[cfg(test)]
@@ -86,15 +112,42 @@ mod tests {
     fn what_is_usual_counts_whole_and_what_is_absurd_hardly() {
         assert_eq!([0.0, -2.4, 2.5].map(|z| weight(z, 2.5).to_bits()), [1.0_f64.to_bits(); 3]);
         assert!((weight(5.0, 2.5) - 0.25).abs() < 1e-15);
+        assert!((weight(10.0, 2.5) - 4.0 * 0.25_f64.powi(4)).abs() < 1e-15);
         // What a value pulls with falls as its distance grows.
         assert!(100.0 * weight(100.0, 2.5) < 10.0 * weight(10.0, 2.5));
         assert!((median(vec![3.0, 1.0, 2.0, 10.0]) - 2.5).abs() < 1e-15);
     }
 
+    /// One flight of ten burns half more: it counts little as a whole, and its segments agree with each other.
+    #[test]
+    fn an_absurd_flight_is_one_before_anything_is_learnt() {
+        let (flights, each) = (10, 4);
+        let value = |flight: usize, k: usize| {
+            let absurd = if flight == 3 { 0.4 } else { 0.0 };
+            absurd + 0.002 * (flight as f64 - 4.5) + 0.001 * k as f64
+        };
+        let rows = ChannelRows {
+            columns: faer::Mat::from_fn(flights * each, 1, |row, _| value(row / each, row % each)),
+            variance: vec![1e-6; flights * each],
+            loadings: vec![vec![0.003; flights * each]],
+            groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
+            shares: vec![1.0; flights],
+        };
+        let weights = Weights::before(&rows);
+        assert!(weights.rows.iter().all(|weight| weight.to_bits() == 1.0_f64.to_bits()));
+        for (flight, weight) in weights.groups.iter().enumerate() {
+            // 5 of 40 % over the scale, which is the least of 1 %: an eighth.
+            let expected = if flight == 3 { 4.0 * (0.05_f64 / 0.4).powi(4) } else { 1.0 };
+            assert!((weight - expected).abs() < 0.1 * expected, "{flight}: {weight}");
+        }
+    }
+
     #[test]
     fn weights_are_settled_where_none_of_them_moved_by_much() {
         let of = |row: f64, group: f64| Weights { rows: vec![1.0, row], groups: vec![group] };
-        assert!(of(0.5, 0.7).settled(&of(0.5, 0.7)) && of(0.5, 0.7).settled(&of(0.46, 0.74)));
+        assert!(of(0.5, 0.7).settled(&of(0.5, 0.7)) && of(0.5, 0.7).settled(&of(0.48, 0.73)));
         assert!(!of(0.5, 0.7).settled(&of(0.44, 0.7)) && !of(0.5, 0.7).settled(&of(0.5, 0.76)));
+        // An absurd flight whose weight has halved had made the scatter √2 too large.
+        assert!(!of(0.5, 0.001).settled(&of(0.5, 0.002)));
     }
 }

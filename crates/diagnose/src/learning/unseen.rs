@@ -10,7 +10,7 @@ use crate::learning::rows::ChannelRows;
 use crate::math::lower::{Lower, dot};
 use crate::math::quantile::{QuantileType, quantile};
 use crate::priors::NOISE_LIMITS;
-use crate::thresholds::{FACTOR_LIMITS, ORDINARY_SEGMENTS};
+use crate::thresholds::{ABSURD, FACTOR_LIMITS, ORDINARY_SEGMENTS};
 
 /// The 97.5 % quantile of the normal distribution.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
@@ -29,6 +29,13 @@ pub(super) struct Unseen {
     weight: f64,
     /// Errors of its values, each with the model's variance and the row that it is of.
     values: Vec<(f64, f64, usize)>,
+}
+
+impl Unseen {
+    /// How much it says of ordinary flights.
+    const fn counts(&self) -> f64 {
+        self.share * self.weight
+    }
 }
 
 /// Flights predicted from all others at given noise.
@@ -116,16 +123,16 @@ pub(super) fn unseen(
 /// The factor between flights at which the mean errors of unseen flights are as large as announced, if that is more.
 ///
 /// ```text
-/// Σ_f s_f·e_f²/(v_model + v_within + b² v_between) = Σ_f s_f,   s the share of a flight that counts
+/// Σ_f s_f·e_f²/(v_model + v_within + b² v_between) = Σ_f s_f,   s the share of a flight that counts, times its weight
 /// ```
 pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
     let excess = |factor: f64| {
         let of = |flight: &Unseen| {
             let announced = flight.of_model + flight.within + factor * factor * flight.between;
-            // An absurd flight counts as a distant one.
-            flight.share * (flight.mean * flight.mean / announced).min(9.0)
+            // An absurd flight counts as a distant one, as far as it counts.
+            flight.counts() * (flight.mean * flight.mean / announced).min(9.0)
         };
-        unseen.iter().map(of).sum::<f64>() - unseen.iter().map(|flight| flight.share).sum::<f64>()
+        unseen.iter().map(of).sum::<f64>() - unseen.iter().map(Unseen::counts).sum::<f64>()
     };
     if unseen.is_empty() || excess(now) <= 0.0 {
         return now;
@@ -145,9 +152,9 @@ pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
 /// factor = q/1.96,  q the 95 % quantile of |error|/announced over unseen values
 /// ```
 ///
-/// What is announced of an outlier is what it was learnt with: its noise divided by its weight. One absurd flight of ten would be
-/// the quantile otherwise, and make every interval as wide as itself. A flight of which less than half counts is too old to say
-/// what comes. With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in
+/// What is announced of an outlier is what it was learnt with: its noise divided by its weight; an absurd one says nothing. One
+/// such flight of ten would be the quantile otherwise, and make every interval as wide as itself. A flight of which less than
+/// half counts is too old to say what comes. With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in
 /// addition.
 pub(super) fn factor_by_unseen(
     rows: &ChannelRows,
@@ -159,6 +166,7 @@ pub(super) fn factor_by_unseen(
     let recent = unseen.iter().filter(|flight| flight.share >= 0.5);
     let distances = recent
         .flat_map(|flight| flight.values.iter().map(move |value| (flight.weight, value)))
+        .filter(|(weight, (.., row))| weight.min(weights.rows[*row]) > ABSURD)
         .map(|(weight, &(error, of_model, row))| {
             let own = within * rows.variance[row] / weights.rows[row];
             let noise = own + between * rows.common_variance(row) / weight;
