@@ -53,7 +53,7 @@ pub mod settings;
 pub use alert::{Alert, AlertRule, AlertRuleError};
 pub use filter::{ChangeFilter, EventBefore, FilteredFlight};
 pub use fleet::{FleetMean, fleet_mean};
-pub use history::{Bearing, Change, EventEffect, History, weighted_mean_percent};
+pub use history::{Bearing, Change, EventEffect, History, StepInGap, weighted_mean_percent};
 pub use levels::{Estimate, Levels, NORMAL_95};
 pub use months::{Month, months};
 pub use noise::Noise;

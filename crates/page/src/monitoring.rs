@@ -124,6 +124,10 @@ fn alerts(document: &MonitorDocument) -> Markup {
                         @if let Some(engine) = alert.engine { ", engine " (engine) }
                         ": " (figure(&alert.size)) " " (alert.unit) " since " (day(&alert.since))
                         " (" code { (alert.rule) } ")"
+                        @if let Some(step) = &alert.step_in_gap {
+                            ", or one step of " (figure(&step.step_percent)) " % between " (day(&step.after)) " and "
+                            (day(&step.until)) ", when it did not fly"
+                        }
                         @if !alert.likely_causes.is_empty() { "; likely " (alert.likely_causes.join(", ")) }
                         @else if let Some(reason) = &alert.no_likely_cause { "; no likely cause: " (reason) }
                     }
@@ -139,8 +143,9 @@ fn fleet(document: &MonitorDocument) -> Markup {
             p {
                 (fleet.aircraft_type) ": mean of " (counted(fleet.tails, "tail")) " "
                 (figure(&fleet.deviation_percent)) " %, standard deviation between tails "
-                (format!("{:.2}", fleet.between_tails_percent)) " %, trend "
-                (figure(&fleet.trend_percent_per_year)) " % a year."
+                (format!("{:.2}", fleet.between_tails_percent)) " %"
+                @if let Some(trend) = &fleet.trend_percent_per_year { ", trend " (figure(trend)) " % a year" }
+                "."
             }
         }
     }
@@ -199,7 +204,10 @@ fn table(tails: &[(usize, &TailDocument)], document: &MonitorDocument) -> Markup
                                 None => { td { "–" } }
                             }
                         }
-                        td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
+                        @match &tail.trend_percent_per_year {
+                            Some(trend) => { td data-v=(trend.value) { (figure(trend)) } }
+                            None => { td { "–" } }
+                        }
                         td {
                             @match words::newest(tail.told_changes().into_iter()) {
                                 Some(change) => {

@@ -19,7 +19,7 @@ pub use ::monitor::airbus::monitored_fuel_factor_percent;
 pub use deviations::{BeforeLearning, TailDeviations};
 pub use document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure, FleetDocument,
-    FlightDocument, MonitorDocument, MonthDocument, SCHEMA, TailDocument,
+    FlightDocument, MonitorDocument, MonthDocument, SCHEMA, StepInGapDocument, TailDocument,
 };
 pub use events::{Event, EventsError, instant, read_events};
 pub use flights::{MeanConditions, MonitoredFlight, curve_of_flights, flights_of};

@@ -210,6 +210,77 @@ fn scatter(k: usize) -> f64 {
     [0.1, -0.4, 0.3, 0.0, -0.2, 0.4, -0.1, -0.3, 0.2, 0.0][k % 10]
 }
 
+/// A tail of one flight and one of five in 40 days have no trend, and do not enter the fleet's: that is the one of the third, whose
+/// flights show 2 % a year.
+#[test]
+fn a_trend_that_flights_do_not_show_is_none() {
+    let day = |k: usize| format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 28, 1 + k % 28);
+    let of = |name: &str, days: &[usize], slope: f64| {
+        let flights =
+            days.iter().map(|&k| flight(&day(k), slope * k as f64 / 365.25 + scatter(k / 3), None));
+        TailDocument {
+            tail: name.to_owned(),
+            ..document(flights.collect(), &[], &MonitorOptions::default())
+        }
+    };
+    let many: Vec<usize> = (0..250).step_by(3).collect();
+    let tails =
+        vec![of("T-1", &[0], 0.0), of("T-2", &[0, 8, 15, 30, 40], 0.0), of("T-3", &many, 2.0)];
+    let document = MonitorDocument::new(tails, Vec::new());
+    let trends = || document.tails.iter().map(|tail| tail.trend_percent_per_year);
+    assert!(trends().take(2).all(|trend| trend.is_none()), "{:?}", trends().next());
+    let shown = document.tails[2].trend_percent_per_year.unwrap();
+    assert!((shown.value - 2.0).abs() < shown.half_width(), "{shown:?}");
+    assert_eq!(document.fleet[0].tails, 3);
+    assert_eq!(document.fleet[0].trend_percent_per_year.unwrap().value, shown.value);
+    let printed = text(&document, Rows::Tails);
+    let row = printed.lines().find(|line| line.starts_with("T-1")).unwrap();
+    assert!(row.trim_end().ends_with('–'), "{printed}");
+    let csv = String::from_utf8(tables(&document)[0].columns.to_csv()).unwrap();
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let place = lines.next().unwrap().iter().position(|name| *name == "trend_percent_per_year");
+    assert_eq!(lines.next().unwrap()[place.unwrap()], "");
+    let json = String::from_utf8(document.to_json()).unwrap();
+    assert!(json.contains("\"trend_percent_per_year\": null"));
+    // A rule for trends has none to fire on.
+    let none = MonitorDocument::new(vec![of("T-1", &[0], 0.0)], Vec::new());
+    assert!(none.fleet[0].trend_percent_per_year.is_none());
+}
+
+/// No flight from day 90 to 210, and 0.9 % more afterwards: a trend or a step, which is said wherever the trend is.
+#[test]
+fn a_trend_that_may_be_a_step_in_a_gap_says_so() {
+    let start = |day: usize| {
+        let first: jiff::Timestamp = "2018-01-01T08:00:00Z".parse().unwrap();
+        (first + jiff::SignedDuration::from_hours(24 * day as i64)).to_string()
+    };
+    let days = (0..90).step_by(3).chain((210..365).step_by(3));
+    let flights = days.enumerate().map(|(k, day)| {
+        let step = if day < 150 { 0.0 } else { 0.9 };
+        flight(&start(day), 3.0 * scatter(k) + step, None)
+    });
+    let deviations = TailDeviations::of_flights("C750", "law", flights.collect());
+    let found = MonitoredTail::new("T-1", &deviations, &[]).unwrap().unwrap();
+    let rules = vec!["trend=0.5".parse().unwrap()];
+    let options = MonitorOptions { rules, ..MonitorOptions::default() };
+    let document = MonitorDocument::new(vec![found.document(&options)], found.alerts(&options));
+    let tail = &document.tails[0];
+    assert!(tail.changes.is_empty(), "{:?}", tail.changes);
+    let step = tail.step_in_gap.as_ref().unwrap();
+    assert_eq!((&step.after, &step.until), (&start(87), &start(210)));
+    assert!((step.step_percent.value - 0.9).abs() < step.step_percent.half_width(), "{step:?}");
+    assert_eq!(document.alerts[0].step_in_gap.as_ref(), Some(step));
+    let printed = text(&document, Rows::Tails);
+    let words = "or one step of ";
+    assert_eq!(printed.matches(words).count(), 2, "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
+    for table in tables(&document).iter().filter(|table| ["tails", "alerts"].contains(&table.name))
+    {
+        let csv = String::from_utf8(table.columns.to_csv()).unwrap();
+        assert!(csv.contains("step_in_gap_percent_ci95_low") && csv.contains(&start(87)), "{csv}");
+    }
+}
+
 /// Oracle: 100·(e^{d/100} − 1) of the level; a last month of one flight that is 2 % lower decides nothing.
 #[test]
 fn what_to_plan_with_follows_from_the_level_and_not_from_one_flight() {

@@ -73,8 +73,11 @@ pub struct TailDocument {
     pub deviation_percent: Figure,
     /// Mean of deviations by the model before it learnt each flight; absent where it was not rebuilt.
     pub before_learning_percent: Option<Figure>,
-    /// Trend between changes.
-    pub trend_percent_per_year: Figure,
+    /// Trend between changes; absent where the flights say next to nothing of it.
+    pub trend_percent_per_year: Option<Figure>,
+    /// A step, while the aircraft did not fly, that the trend may be in place of.
+    #[serde(default)]
+    pub step_in_gap: Option<StepInGapDocument>,
     /// Standard deviation of a segment about its flight.
     pub within_flight_percent: f64,
     /// Standard deviation of what a flight keeps.
@@ -140,6 +143,17 @@ pub struct CostDocument {
     pub co2_kg_per_year: Option<f64>,
     /// Price a year.
     pub price_per_year: Option<f64>,
+}
+
+/// A step in a time without flights, which explains the flights about as well as a trend.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepInGapDocument {
+    /// Start of the last flight before that time.
+    pub after: String,
+    /// Start of the first flight since.
+    pub until: String,
+    /// Size.
+    pub step_percent: Figure,
 }
 
 /// A change.
@@ -258,8 +272,8 @@ pub struct FleetDocument {
     pub deviation_percent: Figure,
     /// Standard deviation between tails beyond the uncertainty of each.
     pub between_tails_percent: f64,
-    /// Mean of the tails' trends.
-    pub trend_percent_per_year: Figure,
+    /// Mean of the trends of the tails whose flights show one; absent where none does.
+    pub trend_percent_per_year: Option<Figure>,
     /// Months: means over the tails that flew in them.
     pub months: Vec<FleetMonthDocument>,
 }
@@ -291,6 +305,9 @@ pub struct AlertDocument {
     pub unit: String,
     /// Since when.
     pub since: String,
+    /// Of a trend: the step that it may be in place of.
+    #[serde(default)]
+    pub step_in_gap: Option<StepInGapDocument>,
     /// Effects that the newest diagnosis of the tail names, where one is given and a cause stands out there.
     pub likely_causes: Vec<String>,
     /// Why that diagnosis names none, in words for a person.
@@ -358,7 +375,7 @@ fn fleet(aircraft_type: &str, tails: &[TailDocument]) -> Option<FleetDocument> {
         fleet_mean(&figures)
     };
     let deviation = mean(&|tail| Some(tail.deviation_percent))?;
-    let trend = mean(&|tail| Some(tail.trend_percent_per_year))?;
+    let trend = mean(&|tail| tail.trend_percent_per_year);
     let mut names: Vec<&str> =
         of_type.iter().flat_map(|tail| tail.months.iter().map(|m| m.month.as_str())).collect();
     names.sort_unstable();
@@ -381,7 +398,7 @@ fn fleet(aircraft_type: &str, tails: &[TailDocument]) -> Option<FleetDocument> {
         tails: deviation.tails,
         deviation_percent: of_tails(&deviation),
         between_tails_percent: deviation.between_tails,
-        trend_percent_per_year: of_tails(&trend),
+        trend_percent_per_year: trend.as_ref().map(of_tails),
         months,
     })
 }

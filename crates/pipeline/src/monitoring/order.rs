@@ -116,6 +116,7 @@ mod tests {
             size: document.tails[5].deviation_percent,
             unit: "%".to_owned(),
             since: String::new(),
+            step_in_gap: None,
             likely_causes: Vec::new(),
             no_likely_cause: None,
         };

@@ -15,7 +15,7 @@ use monitor::{
 use super::deviations::{BeforeLearning, TailDeviations};
 use super::document::{
     AirbusTerms, ChangeDocument, CostDocument, EventDocument, Figure, FlightDocument,
-    MonthDocument, TailDocument,
+    MonthDocument, StepInGapDocument, TailDocument,
 };
 use super::events::Event;
 use super::flights::{MeanConditions, MonitoredFlight};
@@ -205,7 +205,12 @@ impl<'a> MonitoredTail<'a> {
             reference: self.reference,
             deviation_percent: level.into(),
             before_learning_percent: self.before_learning_mean(0..self.flights.len()),
-            trend_percent_per_year: self.history.levels.trend_percent_per_year().into(),
+            trend_percent_per_year: self
+                .history
+                .levels
+                .measured_trend_percent_per_year()
+                .map(Figure::from),
+            step_in_gap: self.step_in_gap(),
             within_flight_percent: noise.within_flight_percent,
             between_flights_percent: noise.between_flights_percent,
             correlation: noise.correlation,
@@ -220,6 +225,17 @@ impl<'a> MonitoredTail<'a> {
             flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
             months,
         }
+    }
+
+    /// The step that its trend may be in place of.
+    fn step_in_gap(&self) -> Option<StepInGapDocument> {
+        let step = self.history.step_in_gap?;
+        let start = |flight: usize| self.flights[flight].start.to_string();
+        Some(StepInGapDocument {
+            after: start(step.first_flight - 1),
+            until: start(step.first_flight),
+            step_percent: step.step_percent.into(),
+        })
     }
 
     /// What its flights would have shown at their mean conditions.

@@ -2,7 +2,7 @@
 
 use core::fmt::Write;
 
-use super::document::{Figure, MonitorDocument, TailDocument};
+use super::document::{Figure, MonitorDocument, StepInGapDocument, TailDocument};
 use crate::summary::{aligned, counted};
 
 /// What the table has a row for.
@@ -35,7 +35,7 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
             counted(fleet.tails, "tail"),
             signed(&fleet.deviation_percent),
             fleet.between_tails_percent,
-            signed(&fleet.trend_percent_per_year),
+            or_dash(fleet.trend_percent_per_year.as_ref()),
         );
     }
     for tail in &document.tails {
@@ -51,13 +51,14 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
         };
         let _ = writeln!(
             text,
-            "ALERT {}{}: {} {} since {} ({}){causes}",
+            "ALERT {}{}: {} {} since {} ({}){}{causes}",
             alert.tail,
             of_engine(alert.engine),
             signed(&alert.size),
             alert.unit,
             date(&alert.since),
             alert.rule,
+            alert.step_in_gap.as_ref().map_or_else(String::new, or_step),
         );
     }
     text.push_str(SIGNS);
@@ -96,7 +97,7 @@ fn tails(document: &MonitorDocument) -> String {
             airbus
                 .specific_range_deviation_std_percent
                 .map_or_else(|| "–".to_owned(), |std| format!("{std:.2}")),
-            signed(&tail.trend_percent_per_year),
+            or_dash(tail.trend_percent_per_year.as_ref()),
         ]);
         rows.push(row);
     }
@@ -145,7 +146,7 @@ fn months(document: &MonitorDocument) -> String {
                 month.month.clone(),
                 month.flights.to_string(),
                 signed(&month.deviation_percent),
-                month.before_learning_percent.as_ref().map_or_else(|| "–".to_owned(), signed),
+                or_dash(month.before_learning_percent.as_ref()),
                 plain(month.specific_range_deviation_percent.value, 2),
                 plain(month.retained_fuel_factor_percent, 1),
             ]);
@@ -163,6 +164,10 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
             tail.flights_without_engines,
             counted(tail.flights.len(), "flight"),
         );
+    }
+    if let Some(step) = &tail.step_in_gap {
+        let trend = or_dash(tail.trend_percent_per_year.as_ref());
+        let _ = writeln!(text, "{}: trend {trend} %/year{}", tail.tail, or_step(step));
     }
     for change in &tail.changes {
         let _ = writeln!(
@@ -200,6 +205,16 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
     }
 }
 
+/// What a trend may be in place of, on a line of its own.
+fn or_step(step: &StepInGapDocument) -> String {
+    format!(
+        ",\n  or one step of {} % between {} and {}",
+        signed(&step.step_percent),
+        date(&step.after),
+        date(&step.until),
+    )
+}
+
 fn of_engine(engine: Option<usize>) -> String {
     engine.map_or_else(String::new, |engine| format!(" engine {engine}"))
 }
@@ -207,6 +222,11 @@ fn of_engine(engine: Option<usize>) -> String {
 /// `+1.23 ± 0.20`.
 fn signed(figure: &Figure) -> String {
     format!("{} ± {:.2}", plain(figure.value, 2), figure.half_width())
+}
+
+/// The same, or a dash.
+fn or_dash(figure: Option<&Figure>) -> String {
+    figure.map_or_else(|| "–".to_owned(), signed)
 }
 
 /// With its sign.
