@@ -82,6 +82,11 @@ pub const GAP_DAYS: f64 = 30.0;
 /// called strong (Jeffreys 1961).
 pub const DOUBTED_TREND_ODDS: f64 = 0.1;
 
+/// Standard deviation of what a standard deviation of a condition over a type's flights changes of the deviation by its model, %, before
+/// the flights are seen; the same of squares and products. Our choice: a guide that is a few per cent off is so at the edges of
+/// what a type flies, and one condition may make up for another.
+pub const MODEL_BY_CONDITION_PERCENT: f64 = 3.0;
+
 /// Flights on either side within which the probability of one change is summed up where no single flight stands out: two
 /// weeks of an aircraft that flies one recorded leg a day.
 pub const ABOUT_FLIGHTS: usize = 7;

@@ -42,7 +42,8 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
         }
         p.note {
             "First the tails of which a rule fired, or which have changed in the last 90 days of these flights, then what burns most \
-             over the mean of its type. Where the change of one engine is that of all together, the engine's alone is told."
+             over the mean of its type, each at the mean conditions of all tails of the type: what the model lacks at other Mach \
+             numbers, masses and levels is no difference between aircraft. Where the change of one engine is that of all together, the engine's alone is told."
         }
         @if !document.alerts.is_empty() { (alerts(document)) }
         section {
@@ -90,6 +91,7 @@ fn in_words(tail: &TailDocument, document: &MonitorDocument) -> Markup {
             dd {
                 b { (words::found(tail)) }
                 @if let Some(shared) = words::shared(tail, &document.fleet) { " " (shared) }
+                @if let Some(compared) = words::compared(tail, document) { " " (compared) }
             }
             dt { "What to do" }
             dd { @for (k, advice) in words::advice(tail, document).iter().enumerate() { @if k > 0 { br; } (advice) } }
@@ -145,7 +147,7 @@ fn fleet(document: &MonitorDocument) -> Markup {
                 (figure(&fleet.deviation_percent)) " %, standard deviation between tails "
                 (format!("{:.2}", fleet.between_tails_percent)) " %"
                 @if let Some(trend) = &fleet.trend_percent_per_year { ", trend " (figure(trend)) " % a year" }
-                "."
+                "; at their mean conditions, " (fleet.reference.in_words()) "."
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use pipeline::monitoring::{
     AlertDocument, ChangeDocument, Figure, FleetDocument, MonitorDocument, TailDocument,
-    monitored_fuel_factor_percent,
+    TypeConditions, monitored_fuel_factor_percent,
 };
 
 use super::{day, figure};
@@ -98,6 +98,24 @@ pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<St
             more_or_less(level.value)
         )
     })
+}
+
+/// Against the other tails of its type, at conditions common to all of them.
+pub(super) fn compared(tail: &TailDocument, document: &MonitorDocument) -> Option<String> {
+    let fleet = document.fleet.iter().find(|fleet| fleet.aircraft_type == tail.aircraft_type)?;
+    let against = document.against_type(tail).map(|against| of_predicted(&against))?;
+    tail.at_type_conditions_percent?;
+    let burns = if differs_from_zero(&against) {
+        format!("burns {} % {} than", size(&against), more_or_less(against.value))
+    } else {
+        format!("burns as much ({} %) as", figure(&against))
+    };
+    Some(format!(
+        "At the mean conditions of its type ({}; its own are {}) it {burns} the {} tails in the mean.",
+        fleet.reference.in_words(),
+        TypeConditions::from(&tail.reference).in_words(),
+        fleet.tails
+    ))
 }
 
 /// What to do about it; never empty.
@@ -260,6 +278,7 @@ mod tests {
         let fleet = |tails: usize, level: f64| FleetDocument {
             aircraft_type: "C750".to_owned(),
             tails,
+            reference: TypeConditions::from(&tail.reference),
             deviation_percent: Figure { value: level, ci95: [level - 0.5, level + 0.5] },
             between_tails_percent: 0.7,
             trend_percent_per_year: tail.trend_percent_per_year,
@@ -356,6 +375,29 @@ mod tests {
         );
         let told = advice(&few, &alone(&few, &[]));
         assert!(told[1].ends_with("+1.41 %, by 0 flights alone)."), "{told:?}");
+    }
+
+    /// Two tails that burn 2 % differently as they are flown, and alike at common conditions.
+    #[test]
+    fn tails_are_compared_at_common_conditions() {
+        let flown = |name: &str, level: f64, common: f64| TailDocument {
+            tail: name.to_owned(),
+            at_type_conditions_percent: Some(Figure {
+                value: common,
+                ci95: [common - 0.3, common + 0.3],
+            }),
+            ..tail((level, 0.2), (0.0, 1.0), &serde_json::json!([]))
+        };
+        let tails = vec![flown("N1", -1.0, -2.0), flown("N2", -3.0, -2.1)];
+        let document = MonitorDocument::new(tails, Vec::new());
+        let told = compared(&document.tails[0], &document).unwrap();
+        assert!(told.contains("it burns as much (+0.05 ± 0.30 %) as the 2 tails"), "{told}");
+        assert!(told.contains("its own are Mach 0.800, 0 ft, 0 kg"), "{told}");
+        let tails = vec![flown("N1", -2.0, -1.0), flown("N2", -2.0, -3.0)];
+        let document = MonitorDocument::new(tails, Vec::new());
+        let told = compared(&document.tails[0], &document).unwrap();
+        assert!(told.contains("it burns 1.01 ± 0.30 % more than the 2 tails"), "{told}");
+        assert_eq!(compared(&document.tails[0], &alone(&document.tails[0], &[])), None);
     }
 
     #[test]

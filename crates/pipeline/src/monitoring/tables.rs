@@ -96,6 +96,9 @@ fn tails(document: &MonitorDocument) -> Columns {
     columns.text("from", rows.iter().map(|tail| tail.from.clone()));
     columns.text("to", rows.iter().map(|tail| tail.to.clone()));
     figure(&mut columns, "deviation_percent", rows, |tail| Some(tail.deviation_percent));
+    figure(&mut columns, "at_type_conditions_percent", rows, |tail| {
+        tail.at_type_conditions_percent
+    });
     figure(&mut columns, "trend_percent_per_year", rows, |tail| tail.trend_percent_per_year);
     step_in_gap(&mut columns, rows, |tail| tail.step_in_gap.as_ref());
     figure(&mut columns, "before_learning_percent", rows, |tail| tail.before_learning_percent);

@@ -8,8 +8,9 @@ use flight::Timestamp;
 use monitor::airbus;
 use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
 use monitor::{
-    AlertRule, Bearing, Change, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Noise,
-    Series, SeriesError, months, weighted_mean_percent, years_between,
+    AlertRule, Bearing, CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation,
+    FlownConditions, FlownFlight, History, Month, Noise, Series, SeriesError, months,
+    weighted_mean_percent, years_between,
 };
 
 use super::deviations::{BeforeLearning, TailDeviations};
@@ -74,6 +75,7 @@ pub struct MonitoredTail<'a> {
     model: &'a str,
     flights: Vec<&'a MonitoredFlight>,
     reference: MeanConditions,
+    of_level: &'a [([f64; CONDITIONS], f64)],
     /// Flights a year, those without a segment inside the table too; `None` over less than a month.
     recorded_per_year: Option<f64>,
     events: Vec<&'a Event>,
@@ -179,6 +181,7 @@ impl<'a> MonitoredTail<'a> {
             model: &deviations.model,
             flights,
             reference,
+            of_level: &deviations.of_level,
             recorded_per_year: recorded_per_year(&deviations.flights),
             events,
             history,
@@ -204,6 +207,7 @@ impl<'a> MonitoredTail<'a> {
             to: date(self.flights.last()),
             reference: self.reference,
             deviation_percent: level.into(),
+            at_type_conditions_percent: None,
             before_learning_percent: self.before_learning_mean(0..self.flights.len()),
             trend_percent_per_year: self
                 .history
@@ -224,6 +228,25 @@ impl<'a> MonitoredTail<'a> {
             events: self.event_documents(),
             flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
             months,
+        }
+    }
+
+    /// Its flights by the conditions flown: what each deviates by the initial model there, less what the level has changed since.
+    #[must_use]
+    pub fn flown_conditions(&self) -> FlownConditions {
+        let levels = &self.history.levels;
+        let now = levels.last_level_percent(self.series()).value;
+        let flown = |(index, flight): (usize, &&MonitoredFlight)| {
+            let then = levels.level_percent(index, self.series().years(flight.start)).value;
+            Some(FlownFlight {
+                conditions: flight.conditions.to_monitor(&self.reference),
+                deviation_percent: flight.initial?.deviation_percent() - (then - now),
+                weight: self.history.weights[index],
+            })
+        };
+        FlownConditions {
+            flights: self.flights.iter().enumerate().filter_map(flown).collect(),
+            of_level: self.of_level.to_vec(),
         }
     }
 

@@ -30,12 +30,13 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     for fleet in document.fleet.iter().filter(|fleet| fleet.tails > 1) {
         let _ = writeln!(
             text,
-            "Fleet {}: {}, mean {} %, std between tails {:.2} %,\n  trend {} %/year.",
+            "Fleet {}: {}, mean {} %, std between tails {:.2} %,\n  trend {} %/year; at {}.",
             fleet.aircraft_type,
             counted(fleet.tails, "tail"),
             signed(&fleet.deviation_percent),
             fleet.between_tails_percent,
             or_dash(fleet.trend_percent_per_year.as_ref()),
+            fleet.reference.in_words(),
         );
     }
     for tail in &document.tails {
@@ -69,6 +70,12 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
         }
         Rows::Months => "Factor: mean of three months' fuel factors, rounded up to 0.1 %.\n",
     });
+    if document.fleet.iter().any(|fleet| fleet.tails > 1) {
+        text.push_str(
+            "A fleet's levels, and the order of its tails (after what is new): at the\n\
+             mean conditions of its tails, counted alike.\n",
+        );
+    }
     text.push_str(
         "A change has the 95 % interval of its date and the probability p of a change.\n",
     );
