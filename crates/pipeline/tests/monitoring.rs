@@ -232,7 +232,8 @@ fn a_trend_that_flights_do_not_show_is_none() {
     let shown = document.tails[2].trend_percent_per_year.unwrap();
     assert!((shown.value - 2.0).abs() < shown.half_width(), "{shown:?}");
     assert_eq!(document.fleet[0].tails, 3);
-    assert_eq!(document.fleet[0].trend_percent_per_year.unwrap().value, shown.value);
+    let of_fleet = document.fleet[0].trend_percent_per_year.unwrap();
+    assert!((of_fleet.value - shown.value).abs() < 1e-9, "{of_fleet:?}");
     let printed = text(&document, Rows::Tails);
     let row = printed.lines().find(|line| line.starts_with("T-1")).unwrap();
     assert!(row.trim_end().ends_with('–'), "{printed}");
@@ -250,9 +251,9 @@ fn a_trend_that_flights_do_not_show_is_none() {
 /// No flight from day 90 to 210, and 0.9 % more afterwards: a trend or a step, which is said wherever the trend is.
 #[test]
 fn a_trend_that_may_be_a_step_in_a_gap_says_so() {
-    let start = |day: usize| {
+    let start = |day: i64| {
         let first: jiff::Timestamp = "2018-01-01T08:00:00Z".parse().unwrap();
-        (first + jiff::SignedDuration::from_hours(24 * day as i64)).to_string()
+        (first + jiff::SignedDuration::from_hours(24 * day)).to_string()
     };
     let days = (0..90).step_by(3).chain((210..365).step_by(3));
     let flights = days.enumerate().map(|(k, day)| {
