@@ -20,7 +20,7 @@ pub enum AlertRule {
         /// Limit, %.
         percent: f64,
     },
-    /// The trend between changes, % a year.
+    /// The trend between changes, % a year; not where the flights do not show it.
     Trend {
         /// Limit, % a year.
         percent_per_year: f64,
@@ -116,8 +116,11 @@ impl AlertRule {
                 one(level, percent, since).into_iter().collect()
             }
             Self::Trend { percent_per_year } => {
-                let trend = history.levels.trend_percent_per_year();
-                one(trend, percent_per_year, flights[0].time()).into_iter().collect()
+                let trend = history.levels.measured_trend_percent_per_year();
+                trend
+                    .and_then(|trend| one(trend, percent_per_year, flights[0].time()))
+                    .into_iter()
+                    .collect()
             }
             Self::Change { percent, days } => {
                 let recent = |change: &&Change| {

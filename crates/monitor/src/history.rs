@@ -11,8 +11,10 @@ use crate::series::Series;
 use crate::settings::{ChangeBeliefs, REPORTED_PROBABILITY};
 
 mod dated;
+mod gap;
 
 use dated::{changes, nearest};
+pub use gap::StepInGap;
 
 /// How often changes are looked for beside what conditions change. Our choice: where one is found, what conditions change is found
 /// anew beside it, and may show another one.
@@ -72,6 +74,8 @@ pub struct History {
     pub changes: Vec<Change>,
     /// Trend, and levels between the changes.
     pub levels: Levels,
+    /// A step that explains the flights about as well as a trend that stands out does: it is one or the other.
+    pub step_in_gap: Option<StepInGap>,
     /// Of every event, in the order given.
     pub events: Vec<EventEffect>,
     /// The flights at the series' mean conditions; as they were where conditions are not known.
@@ -133,7 +137,8 @@ impl History {
         let measured = Levels::fit(series, &weights, &merged(&boundaries, &recorded), beliefs)?;
         let events = (0..events.len()).map(|event| effect(event, &at_flight, &measured)).collect();
         let at_mean_conditions = levels.at_mean_conditions(series);
-        Some(Self { noise, weights, changes, levels, events, at_mean_conditions })
+        let step_in_gap = gap::step_instead(series, &weights, &levels, (&recorded, beliefs));
+        Some(Self { noise, weights, changes, levels, step_in_gap, events, at_mean_conditions })
     }
 
     /// [`weighted_mean_percent`] of flights with the weights of this history.

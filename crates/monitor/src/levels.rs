@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::series::{CONDITIONS, Series};
-use crate::settings::ChangeBeliefs;
+use crate::settings::{ChangeBeliefs, MEASURED_TREND_SHARE};
 
 /// A value and its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,12 @@ pub struct Levels {
     /// Trend, % a year, and what a standard deviation of each condition changes, %.
     coefficients: Row,
     covariance: SMatrix<f64, COLUMNS, COLUMNS>,
+    /// Standard deviation of the trend before the flights are seen, % a year.
+    trend_before_percent_per_year: f64,
+    /// Squares about levels, trend and conditions, in variances of flights.
+    residual: f64,
+    /// ln |Σ Sxx + Λ| − ln |Λ|.
+    ln_volume: f64,
     flights: usize,
 }
 
@@ -89,10 +95,10 @@ impl Levels {
         let rows: Vec<(Row, f64, f64)> = (0..flights)
             .map(|k| (row(series, k), series.flights()[k].deviation_percent(), weights[k]))
             .collect();
-        let mut information = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
-        information.fill_diagonal(beliefs.condition_deviation_percent.powi(-2));
-        information[(0, 0)] = beliefs.slope_deviation_percent_per_year.powi(-2);
+        let mut information = information_before(beliefs);
+        let ln_before: f64 = information.diagonal().map(f64::ln).sum();
         let mut right = Row::zeros();
+        let mut squares = 0.0;
         let mut pieces = Vec::with_capacity(kept.len() + 1);
         for (from, to) in starts.zip(ends) {
             let piece = PieceMeans::of(&rows[from..to]);
@@ -100,12 +106,25 @@ impl Levels {
                 let apart = x - piece.mean_x;
                 information += *weight * apart * apart.transpose();
                 right += *weight * (y - piece.mean_y) * apart;
+                squares += *weight * (y - piece.mean_y).powi(2);
             }
             pieces.push(piece);
         }
-        let covariance = information.cholesky()?.inverse();
+        let cholesky = information.cholesky()?;
+        let ln_volume = 2.0 * cholesky.l_dirty().diagonal().map(f64::ln).sum() - ln_before;
+        let covariance = cholesky.inverse();
         let coefficients = covariance * right;
-        Some(Self { boundaries: kept, pieces, coefficients, covariance, flights })
+        let trend_before_percent_per_year = beliefs.slope_deviation_percent_per_year;
+        Some(Self {
+            boundaries: kept,
+            pieces,
+            coefficients,
+            covariance,
+            trend_before_percent_per_year,
+            residual: squares - coefficients.dot(&right),
+            ln_volume,
+            flights,
+        })
     }
 
     /// What a standard deviation of each condition changes of a deviation, %: nothing where conditions are not known.
@@ -124,6 +143,30 @@ impl Levels {
     #[must_use]
     pub fn trend_percent_per_year(&self) -> Estimate {
         Estimate { value: self.coefficients[0], deviation: self.covariance[(0, 0)].sqrt() }
+    }
+
+    /// The same where the flights show it; `None` where they say next to nothing beyond what was believed before them: its standard
+    /// deviation is above [`MEASURED_TREND_SHARE`] of the one before.
+    #[must_use]
+    pub fn measured_trend_percent_per_year(&self) -> Option<Estimate> {
+        let trend = self.trend_percent_per_year();
+        let largest = MEASURED_TREND_SHARE * self.trend_before_percent_per_year;
+        (trend.deviation <= largest).then_some(trend)
+    }
+
+    /// ln of the density of the flights' deviations, less Σ ½ ln(w/2π), which no boundary changes: levels, normal about `middle_percent`,
+    /// trend and conditions are integrated out.
+    ///
+    /// ```text
+    /// −½ [Σ Syy − bᵀ Σ Sxy + ln |Σ Sxx + Λ| − ln |Λ| + Σ (ȳ − middle)²W/(1 + s²W) + ln(1 + s²W)]  [monitoring.20]
+    /// ```
+    #[must_use]
+    pub(crate) fn ln_evidence(&self, middle_percent: f64, beliefs: &ChangeBeliefs) -> f64 {
+        let of_level = |piece: &PieceMeans| {
+            let volume = 1.0 + beliefs.level_deviation_percent.powi(2) * piece.weight;
+            (piece.mean_y - middle_percent).powi(2) * piece.weight / volume + volume.ln()
+        };
+        -0.5 * (self.residual + self.ln_volume + self.pieces.iter().map(of_level).sum::<f64>())
     }
 
     /// The step at a boundary, by its place among the boundaries, %.
@@ -176,6 +219,14 @@ impl PieceMeans {
         let mean_y = rows.iter().map(|(_, y, weight)| weight * y).sum::<f64>() / weight;
         Self { weight, mean_x, mean_y }
     }
+}
+
+/// Λ: one over the variances of before the flights are seen.
+fn information_before(beliefs: &ChangeBeliefs) -> SMatrix<f64, COLUMNS, COLUMNS> {
+    let mut information = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
+    information.fill_diagonal(beliefs.condition_deviation_percent.powi(-2));
+    information[(0, 0)] = beliefs.slope_deviation_percent_per_year.powi(-2);
+    information
 }
 
 fn row(series: &Series, flight: usize) -> Row {
@@ -251,6 +302,39 @@ mod tests {
         check(levels.level_percent(5, 0.3), [0.3, 0.0, 1.0, 0.0]);
         check(levels.last_level_percent(series), [365.0 / 365.25, 0.0, 0.0, 1.0]);
         assert!(levels.step_percent(2).is_none());
+        // Levels about a middle of 0.2 %, beside slope and conditions about 0: a dense normal density.
+        let middle = 0.2;
+        let level = beliefs.level_deviation_percent.powi(2);
+        let means: Vec<DVector<f64>> = (0..3)
+            .map(|which| {
+                let weight = |k: usize| if piece(k) == which { weights[k] } else { 0.0 };
+                let sum: f64 = (0..12).map(weight).sum();
+                let mean =
+                    |column: usize| (0..12).map(|k| weight(k) * design[(k, column)]).sum::<f64>();
+                DVector::from_fn(WIDTH, |column, _| mean(column) / sum)
+            })
+            .collect();
+        let prior = |column: usize| match column {
+            0 => beliefs.slope_deviation_percent_per_year.powi(2),
+            1..4 => 0.0,
+            _ => beliefs.condition_deviation_percent.powi(2),
+        };
+        let apart = |k: usize, column: usize| design[(k, column)] - means[piece(k)][column];
+        let dense = DMatrix::from_fn(12, 12, |i, j| {
+            let common = |column: usize| apart(i, column) * apart(j, column) * prior(column);
+            let of_level = if piece(i) == piece(j) { level } else { 0.0 };
+            (0..WIDTH).map(common).sum::<f64>()
+                + of_level
+                + if i == j { 1.0 / weights[i] } else { 0.0 }
+        });
+        let cholesky = dense.cholesky().unwrap();
+        let apart = DVector::from_fn(12, |k, _| y[k] - middle);
+        let expected = -0.5
+            * (apart.dot(&cholesky.solve(&apart))
+                + 2.0 * cholesky.l().diagonal().map(f64::ln).sum()
+                + weights.map(f64::ln).iter().sum::<f64>());
+        let found_evidence = levels.ln_evidence(middle, &beliefs);
+        assert!((found_evidence - expected).abs() < 1e-9, "{found_evidence} {expected}");
         for (k, by) in levels.by_condition_percent().iter().enumerate() {
             assert!((by - found[4 + k]).abs() < 1e-10, "{by}");
         }

@@ -2,7 +2,8 @@
 //!
 //! What it is: [`Series`] holds a deviation per flight, [`History::fit`] reads it: the [`Noise`] of flights, the
 //! [`Change`]s with probability and the interval of their dates, a trend and the [`Levels`] between the changes, the effect of
-//! recorded events. [`months`] groups flights, [`fleet_mean`] tails, [`airbus`] has the terms in which operators report,
+//! recorded events. [`months`] groups flights, [`fleet_mean`] tails, whose levels
+//! [`to_common_conditions`] puts to common conditions, [`airbus`] has the terms in which operators report,
 //! [`cost`] what a deviation costs, [`AlertRule`] what somebody should look at.
 //! What it is not: it knows no model and no segment. Whoever has both computes the deviations, 100·ln(recorded/predicted) fuel
 //! flow, and decides of what reference they speak.
@@ -39,6 +40,7 @@
 
 pub mod airbus;
 mod alert;
+mod conditions;
 pub mod cost;
 mod filter;
 mod fleet;
@@ -51,9 +53,10 @@ mod series;
 pub mod settings;
 
 pub use alert::{Alert, AlertRule, AlertRuleError};
+pub use conditions::{FlownConditions, FlownFlight, to_common_conditions};
 pub use filter::{ChangeFilter, EventBefore, FilteredFlight};
 pub use fleet::{FleetMean, fleet_mean};
-pub use history::{Bearing, Change, EventEffect, History, weighted_mean_percent};
+pub use history::{Bearing, Change, EventEffect, History, StepInGap, weighted_mean_percent};
 pub use levels::{Estimate, Levels, NORMAL_95};
 pub use months::{Month, months};
 pub use noise::Noise;

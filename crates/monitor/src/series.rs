@@ -9,7 +9,7 @@ use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 const SECONDS_A_YEAR: f64 = DAYS_PER_YEAR * SECONDS_PER_DAY;
 
 /// Standard deviation over the mean below which a condition does not vary. Our choice: rounding.
-const LEAST_VARIATION: f64 = 1e-9;
+pub(crate) const LEAST_VARIATION: f64 = 1e-9;
 
 /// What one flight shows: the mean of its segments' deviations, and how much they scatter.
 ///

@@ -70,6 +70,23 @@ const MINUTE_YEARS: f64 = 60.0 / (DAYS_PER_YEAR * SECONDS_PER_DAY);
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;
 
+/// Largest standard deviation of a trend as a share of the one believed before the flights, of which it is stated. Our choice:
+/// beyond, the flights alone would give it ± 4 % a year (0.8/√(1 − 0.8²) of 1.5, twice), more than any ageing.
+pub const MEASURED_TREND_SHARE: f64 = 0.8;
+
+/// Days between two flights from which the time between them is a gap, in which a step may be what a trend is taken for. Our choice: a
+/// month; in a shorter time something rarely changes.
+pub const GAP_DAYS: f64 = 30.0;
+
+/// Least odds of a step in a gap against a trend at which a trend is stated as one or the other. Our choice: ten to one is what is
+/// called strong (Jeffreys 1961).
+pub const DOUBTED_TREND_ODDS: f64 = 0.1;
+
+/// Standard deviation of what a standard deviation of a condition over a type's flights changes of the deviation by its model, %, before
+/// the flights are seen; the same of squares and products. Our choice: a guide that is a few per cent off is so at the edges of
+/// what a type flies, and one condition may make up for another.
+pub const MODEL_BY_CONDITION_PERCENT: f64 = 3.0;
+
 /// Flights on either side within which the probability of one change is summed up where no single flight stands out: two
 /// weeks of an aircraft that flies one recorded leg a day.
 pub const ABOUT_FLIGHTS: usize = 7;

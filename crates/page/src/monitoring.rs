@@ -42,7 +42,8 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
         }
         p.note {
             "First the tails of which a rule fired, or which have changed in the last 90 days of these flights, then what burns most \
-             over the mean of its type. Where the change of one engine is that of all together, the engine's alone is told."
+             over the mean of its type, each at the mean conditions of all tails of the type: what the model lacks at other Mach \
+             numbers, masses and levels is no difference between aircraft. Where the change of one engine is that of all together, the engine's alone is told."
         }
         @if !document.alerts.is_empty() { (alerts(document)) }
         section {
@@ -90,6 +91,7 @@ fn in_words(tail: &TailDocument, document: &MonitorDocument) -> Markup {
             dd {
                 b { (words::found(tail)) }
                 @if let Some(shared) = words::shared(tail, &document.fleet) { " " (shared) }
+                @if let Some(compared) = words::compared(tail, document) { " " (compared) }
             }
             dt { "What to do" }
             dd { @for (k, advice) in words::advice(tail, document).iter().enumerate() { @if k > 0 { br; } (advice) } }
@@ -124,6 +126,10 @@ fn alerts(document: &MonitorDocument) -> Markup {
                         @if let Some(engine) = alert.engine { ", engine " (engine) }
                         ": " (figure(&alert.size)) " " (alert.unit) " since " (day(&alert.since))
                         " (" code { (alert.rule) } ")"
+                        @if let Some(step) = &alert.step_in_gap {
+                            ", or one step of " (figure(&step.step_percent)) " % between " (day(&step.after)) " and "
+                            (day(&step.until)) ", when it did not fly"
+                        }
                         @if !alert.likely_causes.is_empty() { "; likely " (alert.likely_causes.join(", ")) }
                         @else if let Some(reason) = &alert.no_likely_cause { "; no likely cause: " (reason) }
                     }
@@ -139,8 +145,9 @@ fn fleet(document: &MonitorDocument) -> Markup {
             p {
                 (fleet.aircraft_type) ": mean of " (counted(fleet.tails, "tail")) " "
                 (figure(&fleet.deviation_percent)) " %, standard deviation between tails "
-                (format!("{:.2}", fleet.between_tails_percent)) " %, trend "
-                (figure(&fleet.trend_percent_per_year)) " % a year."
+                (format!("{:.2}", fleet.between_tails_percent)) " %"
+                @if let Some(trend) = &fleet.trend_percent_per_year { ", trend " (figure(trend)) " % a year" }
+                "; at their mean conditions, " (fleet.reference.in_words()) "."
             }
         }
     }
@@ -199,7 +206,10 @@ fn table(tails: &[(usize, &TailDocument)], document: &MonitorDocument) -> Markup
                                 None => { td { "–" } }
                             }
                         }
-                        td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
+                        @match &tail.trend_percent_per_year {
+                            Some(trend) => { td data-v=(trend.value) { (figure(trend)) } }
+                            None => { td { "–" } }
+                        }
                         td {
                             @match words::newest(tail.told_changes().into_iter()) {
                                 Some(change) => {

@@ -7,6 +7,7 @@
 mod deviations;
 mod document;
 mod events;
+mod fleet;
 mod flights;
 mod flights_table;
 mod order;
@@ -19,7 +20,8 @@ pub use ::monitor::airbus::monitored_fuel_factor_percent;
 pub use deviations::{BeforeLearning, TailDeviations};
 pub use document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure, FleetDocument,
-    FlightDocument, MonitorDocument, MonthDocument, SCHEMA, TailDocument,
+    FlightDocument, MonitorDocument, MonthDocument, SCHEMA, StepInGapDocument, TailDocument,
+    TypeConditions,
 };
 pub use events::{Event, EventsError, instant, read_events};
 pub use flights::{MeanConditions, MonitoredFlight, curve_of_flights, flights_of};

@@ -1,7 +1,7 @@
 //! From segments with a planted change to what `monitor` states.
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
 
-use monitor::FlightDeviation;
+use monitor::{FlightDeviation, FlownConditions};
 use pipeline::model_file::{GuideRecord, LawSettings, ModelFile};
 use pipeline::monitoring::{
     AlertDocument, BeforeLearning, Event, MeanConditions, MonitorDocument, MonitorOptions,
@@ -208,6 +208,152 @@ fn document(
 /// Scatter of a flight, ± 0.4 %, without a pattern.
 fn scatter(k: usize) -> f64 {
     [0.1, -0.4, 0.3, 0.0, -0.2, 0.4, -0.1, -0.3, 0.2, 0.0][k % 10]
+}
+
+/// A tail of one flight and one of five in 40 days have no trend, and do not enter the fleet's: that is the one of the third, whose
+/// flights show 2 % a year.
+#[test]
+fn a_trend_that_flights_do_not_show_is_none() {
+    let day = |k: usize| format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 28, 1 + k % 28);
+    let of = |name: &str, days: &[usize], slope: f64| {
+        let flights =
+            days.iter().map(|&k| flight(&day(k), slope * k as f64 / 365.25 + scatter(k / 3), None));
+        TailDocument {
+            tail: name.to_owned(),
+            ..document(flights.collect(), &[], &MonitorOptions::default())
+        }
+    };
+    let many: Vec<usize> = (0..250).step_by(3).collect();
+    let tails =
+        vec![of("T-1", &[0], 0.0), of("T-2", &[0, 8, 15, 30, 40], 0.0), of("T-3", &many, 2.0)];
+    let document = MonitorDocument::new(tails, Vec::new());
+    let trends = || document.tails.iter().map(|tail| tail.trend_percent_per_year);
+    assert!(trends().take(2).all(|trend| trend.is_none()), "{:?}", trends().next());
+    let shown = document.tails[2].trend_percent_per_year.unwrap();
+    assert!((shown.value - 2.0).abs() < shown.half_width(), "{shown:?}");
+    assert_eq!(document.fleet[0].tails, 3);
+    let of_fleet = document.fleet[0].trend_percent_per_year.unwrap();
+    assert!((of_fleet.value - shown.value).abs() < 1e-9, "{of_fleet:?}");
+    let printed = text(&document, Rows::Tails);
+    let row = printed.lines().find(|line| line.starts_with("T-1")).unwrap();
+    assert!(row.trim_end().ends_with('–'), "{printed}");
+    let csv = String::from_utf8(tables(&document)[0].columns.to_csv()).unwrap();
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let place = lines.next().unwrap().iter().position(|name| *name == "trend_percent_per_year");
+    assert_eq!(lines.next().unwrap()[place.unwrap()], "");
+    let json = String::from_utf8(document.to_json()).unwrap();
+    assert!(json.contains("\"trend_percent_per_year\": null"));
+    // A rule for trends has none to fire on.
+    let none = MonitorDocument::new(vec![of("T-1", &[0], 0.0)], Vec::new());
+    assert!(none.fleet[0].trend_percent_per_year.is_none());
+}
+
+/// No flight from day 90 to 210, and 0.9 % more afterwards: a trend or a step, which is said wherever the trend is.
+#[test]
+fn a_trend_that_may_be_a_step_in_a_gap_says_so() {
+    let start = |day: i64| {
+        let first: jiff::Timestamp = "2018-01-01T08:00:00Z".parse().unwrap();
+        (first + jiff::SignedDuration::from_hours(24 * day)).to_string()
+    };
+    let days = (0..90).step_by(3).chain((210..365).step_by(3));
+    let flights = days.enumerate().map(|(k, day)| {
+        let step = if day < 150 { 0.0 } else { 0.9 };
+        flight(&start(day), 3.0 * scatter(k) + step, None)
+    });
+    let deviations = TailDeviations::of_flights("C750", "law", flights.collect());
+    let found = MonitoredTail::new("T-1", &deviations, &[]).unwrap().unwrap();
+    let rules = vec!["trend=0.5".parse().unwrap()];
+    let options = MonitorOptions { rules, ..MonitorOptions::default() };
+    let document = MonitorDocument::new(vec![found.document(&options)], found.alerts(&options));
+    let tail = &document.tails[0];
+    assert!(tail.changes.is_empty(), "{:?}", tail.changes);
+    let step = tail.step_in_gap.as_ref().unwrap();
+    assert_eq!((&step.after, &step.until), (&start(87), &start(210)));
+    assert!((step.step_percent.value - 0.9).abs() < step.step_percent.half_width(), "{step:?}");
+    assert_eq!(document.alerts[0].step_in_gap.as_ref(), Some(step));
+    let printed = text(&document, Rows::Tails);
+    let words = "or one step of ";
+    assert_eq!(printed.matches(words).count(), 2, "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
+    for table in tables(&document).iter().filter(|table| ["tails", "alerts"].contains(&table.name))
+    {
+        let csv = String::from_utf8(table.columns.to_csv()).unwrap();
+        assert!(csv.contains("step_in_gap_percent_ci95_low") && csv.contains(&start(87)), "{csv}");
+    }
+}
+
+/// A tail of sixty flights about a Mach number, which burns so much more than the others, by an initial model whose error falls by
+/// 0.5 % for each 0.01 Mach.
+fn of_network(name: &str, mach: f64, more: f64) -> (TailDocument, FlownConditions) {
+    let flights = (0..60).map(|k| {
+        // No pattern has the period of the scatter.
+        let mach = mach + 0.0017 * ((5 * k % 13) as f64 - 6.0);
+        let error = -50.0 * (mach - 0.77) + more;
+        let start = format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 28, 1 + k % 28);
+        let shown = flight(&start, scatter(k), None);
+        MonitoredFlight {
+            initial: shown.learnt.map(|learnt| learnt.raised(error)),
+            learnt_over_initial_percent: error,
+            conditions: MeanConditions {
+                mach,
+                pressure_altitude_m: 10_500.0 + 100.0 * (k % 7) as f64,
+                static_air_temperature_k: 220.0 + (k % 9) as f64,
+                mass_kg: 60_000.0 + 1000.0 * (k % 11) as f64,
+                true_airspeed_m_s: 230.0,
+                initial_fuel_flow_kg_s: 0.6,
+                segments: 5,
+            },
+            ..shown
+        }
+    });
+    let deviations = TailDeviations::of_flights("C750", "law", flights.collect());
+    let found = MonitoredTail::new(name, &deviations, &[]).unwrap().unwrap();
+    (found.document(&MonitorOptions::default()), found.flown_conditions())
+}
+
+/// By construction: five slow and five fast tails are alike but for one of the fast ones, which burns 0.6 % more.
+#[test]
+fn tails_of_other_networks_are_compared_at_common_conditions() {
+    let machs = [0.75, 0.752, 0.754, 0.756, 0.758, 0.79, 0.792, 0.794, 0.796, 0.798];
+    let tails: Vec<(TailDocument, FlownConditions)> = machs
+        .iter()
+        .enumerate()
+        .map(|(k, mach)| of_network(&format!("T-{k}"), *mach, if k == 6 { 0.6 } else { 0.0 }))
+        .collect();
+    let own = MonitorDocument::new(tails.iter().map(|(tail, _)| tail.clone()).collect(), vec![]);
+    assert!(own.fleet[0].between_tails_percent > 0.9, "{:?}", own.fleet[0]);
+    let document = MonitorDocument::compared(tails, Vec::new());
+    let fleet = &document.fleet[0];
+    assert!(fleet.between_tails_percent < 0.3, "{fleet:?}");
+    assert!((fleet.reference.mach - 0.774).abs() < 0.002, "{fleet:?}");
+    let worst = &document.tails[6];
+    assert_eq!(document.by_news()[0], 6);
+    let against = document.against_type(worst).unwrap();
+    assert!((against.value - 0.54).abs() < against.half_width(), "{against:?}");
+    for tail in &document.tails {
+        let (compared, own) = (tail.at_type_conditions_percent.unwrap(), tail.deviation_percent);
+        assert!(compared.half_width() > own.half_width(), "{compared:?} {own:?}");
+        let expected =
+            -50.0 * (fleet.reference.mach - 0.77) + if tail.tail == "T-6" { 0.6 } else { 0.0 };
+        assert!(
+            (compared.value - expected).abs() < compared.half_width(),
+            "{compared:?} {expected}"
+        );
+    }
+    // Months are compared so too.
+    let month = fleet.months[0].deviation_percent;
+    assert!((month.value - fleet.deviation_percent.value).abs() < 0.1, "{month:?} {fleet:?}");
+    let printed = text(&document, Rows::Tails);
+    assert!(printed.contains("; at Mach 0.774, "), "{printed}");
+    assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
+    let csv = String::from_utf8(tables(&document)[0].columns.to_csv()).unwrap();
+    assert!(csv.lines().next().unwrap().contains(",at_type_conditions_percent,"), "{csv}");
+    // What is written reads back with the same fleet.
+    let json = String::from_utf8(document.to_json()).unwrap();
+    let read = MonitorDocument::from_json(&json).unwrap();
+    let (read, written) = (&read.fleet[0], &document.fleet[0]);
+    assert!((read.between_tails_percent - written.between_tails_percent).abs() < 1e-9, "{read:?}");
+    assert!((read.deviation_percent.value - written.deviation_percent.value).abs() < 1e-9);
 }
 
 /// Oracle: 100·(e^{d/100} − 1) of the level; a last month of one flight that is 2 % lower decides nothing.

@@ -4,6 +4,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use monitor::FlownConditions;
 use monitor::cost::CostFactors;
 use pipeline::monitoring::{
     AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail,
@@ -96,14 +97,14 @@ pub(crate) fn monitor_tails(
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let (mut documents, mut alerts) = (Vec::new(), Vec::new());
-        for (tail, fired) in found.into_iter().flatten() {
-            documents.push(tail);
+        for (tail, flown, fired) in found.into_iter().flatten() {
+            documents.push((tail, flown));
             alerts.extend(fired);
         }
-        documents.sort_by(|one, other| one.tail.cmp(&other.tail));
+        documents.sort_by(|(one, _), (other, _)| one.tail.cmp(&other.tail));
         alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
         let words = options.in_words(events.len());
-        Ok((MonitorDocument::new(documents, alerts), words))
+        Ok((MonitorDocument::compared(documents, alerts), words))
     })?;
     Ok(Monitored { document: Arc::new(document), options: options.into() })
 }
@@ -120,7 +121,7 @@ fn monitor_tail(
     tail: &Tail,
     events: &[Event],
     options: &MonitorOptions,
-) -> Result<Option<(TailDocument, Vec<AlertDocument>)>, Failure> {
+) -> Result<Option<(TailDocument, FlownConditions, Vec<AlertDocument>)>, Failure> {
     let result = &tail.result;
     let named =
         |error: &dyn std::fmt::Display| Failure::input(format!("tail {}: {error}", result.tail));
@@ -128,7 +129,10 @@ fn monitor_tail(
         TailDeviations::of_result(result, options.before_learning).since(options.since);
     let found =
         MonitoredTail::new(&result.tail, &deviations, events).map_err(|error| named(&error))?;
-    Ok(found.map(|found| (found.document(options), found.alerts(options))))
+    let documents = |found: MonitoredTail<'_>| {
+        (found.document(options), found.flown_conditions(), found.alerts(options))
+    };
+    Ok(found.map(documents))
 }
 
 #[pymethods]

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
-use monitor::SeriesError;
 use monitor::cost::CostFactors;
+use monitor::{FlownConditions, SeriesError};
 use pipeline::monitoring::{
     AlertDocument, BeforeLearning, Event, FLIGHTS, MonitorDocument, MonitorOptions, MonitoredTail,
     Rows, TailDeviations, TailDocument, flights_by_tail, tables_but_flights, text,
@@ -60,19 +60,19 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     check_refused(&refused, read.len() + refused.len(), false, nothing_left)?;
     let mut documents = Vec::with_capacity(read.len());
     let mut alerts = Vec::new();
-    for (tail, fired) in read {
-        documents.push(tail);
+    for (tail, flown, fired) in read {
+        documents.push((tail, flown));
         alerts.extend(fired);
     }
-    documents.sort_by(|one, other| one.tail.cmp(&other.tail));
+    documents.sort_by(|(one, _), (other, _)| one.tail.cmp(&other.tail));
     alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
-    warn_of_events(&events, |tail| documents.iter().any(|known| known.tail == tail));
+    warn_of_events(&events, |tail| documents.iter().any(|(known, _)| known.tail == tail));
     if let Some(causes) = &causes {
         for alert in &mut alerts {
             causes.explain(alert);
         }
     }
-    let document = MonitorDocument::new(documents, alerts);
+    let document = MonitorDocument::compared(documents, alerts);
     let mut printed = text(&document, if arguments.month { Rows::Months } else { Rows::Tails });
     if let Some(folder) = &arguments.output {
         write(folder, &document, &options.in_words(events.len()))?;
@@ -110,7 +110,7 @@ fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Resul
     })
 }
 
-type Found = (TailDocument, Vec<AlertDocument>);
+type Found = (TailDocument, FlownConditions, Vec<AlertDocument>);
 
 /// Every tail that has something to monitor, and those that are damaged: a tail costs itself, not the fleet.
 fn monitor_all(
@@ -160,5 +160,5 @@ fn monitor_tail(
         );
         return Ok(None);
     };
-    Ok(Some((found.document(options), found.alerts(options))))
+    Ok(Some((found.document(options), found.flown_conditions(), found.alerts(options))))
 }

@@ -2,12 +2,12 @@
 //! predicted; the figures that they are made from are logarithms.
 
 use pipeline::monitoring::{
-    AirbusTerms, AlertDocument, ChangeDocument, Figure, FleetDocument, MonitorDocument,
-    TailDocument, monitored_fuel_factor_percent,
+    AlertDocument, ChangeDocument, Figure, FleetDocument, MonitorDocument, TailDocument,
+    TypeConditions, monitored_fuel_factor_percent,
 };
 
 use super::{day, figure};
-use crate::text::{signed, signed_tenths};
+use crate::text::{counted, signed, signed_tenths};
 
 /// Whether the tail burns more or less than its initial model predicts.
 fn burns_otherwise(tail: &TailDocument) -> bool {
@@ -60,9 +60,26 @@ pub(super) fn found(tail: &TailDocument) -> String {
     } else {
         format!("Burns what its initial model predicts ({} %)", figure(&of_predicted(level)))
     };
-    let trend = &of_predicted(&tail.trend_percent_per_year);
+    let Some(trend) = &tail.trend_percent_per_year.as_ref().map(of_predicted) else {
+        return format!("{level}; the flights are too few to show a trend.");
+    };
     if differs_from_zero(trend) {
-        format!("{level}, and {} % {} each year.", size(trend), more_or_less(trend.value))
+        let each_year =
+            format!("{level}, and {} % {} each year", size(trend), more_or_less(trend.value));
+        match &tail.step_in_gap {
+            Some(step) => {
+                let by = of_predicted(&step.step_percent);
+                format!(
+                    "{each_year}, or {} % {} since one step between {} and {}, when it did not fly: which of the two, these flights \
+                     cannot say.",
+                    size(&by),
+                    more_or_less(by.value),
+                    day(&step.after),
+                    day(&step.until)
+                )
+            }
+            None => format!("{each_year}."),
+        }
     } else {
         format!("{level}; no trend stands out ({} % a year).", figure(trend))
     }
@@ -83,23 +100,36 @@ pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<St
     })
 }
 
+/// Against the other tails of its type, at conditions common to all of them.
+pub(super) fn compared(tail: &TailDocument, document: &MonitorDocument) -> Option<String> {
+    let fleet = document.fleet.iter().find(|fleet| fleet.aircraft_type == tail.aircraft_type)?;
+    let against = document.against_type(tail).map(|against| of_predicted(&against))?;
+    tail.at_type_conditions_percent?;
+    let burns = if differs_from_zero(&against) {
+        format!("burns {} % {} than", size(&against), more_or_less(against.value))
+    } else {
+        format!("burns as much ({} %) as", figure(&against))
+    };
+    Some(format!(
+        "At the mean conditions of its type ({}; its own are {}) it {burns} the {} tails in the mean.",
+        fleet.reference.in_words(),
+        TypeConditions::from(&tail.reference).in_words(),
+        fleet.tails
+    ))
+}
+
 /// What to do about it; never empty.
 pub(super) fn advice(tail: &TailDocument, document: &MonitorDocument) -> Vec<String> {
     // The newest is the one that can still be looked up; the others are listed below it.
     let unexplained: Vec<&ChangeDocument> = unexplained(tail).collect();
     let newest = newest(unexplained.into_iter());
     let mut told: Vec<String> = newest.map(look_up).into_iter().collect();
-    if differs_from_zero(&tail.trend_percent_per_year) && tail.trend_percent_per_year.value > 0.0 {
-        told.push(
-            "Wear, or dirt on engines or airframe: cruisefit diagnose says which of them fits the flights."
-                .to_owned(),
-        );
-    }
+    told.extend(drift(tail));
     if has_cause_to_find(tail, document) {
         told.push(cause(tail, &document.alerts, newest));
-        told.push(format!("Until then: {}.", plan_with(&tail.airbus)));
+        told.push(format!("Until then: {}.", plan_with(tail)));
     } else if burns_otherwise(tail) {
-        told.push(format!("For flight planning: {}.", plan_with(&tail.airbus)));
+        told.push(format!("For flight planning: {}.", plan_with(tail)));
     }
     if told.is_empty() {
         told.push("Nothing to do.".to_owned());
@@ -107,10 +137,31 @@ pub(super) fn advice(tail: &TailDocument, document: &MonitorDocument) -> Vec<Str
     told
 }
 
-/// The factor of the level with its interval, as it is entered: rounded up.
-fn plan_with(factor: &AirbusTerms) -> String {
+/// What to do about a trend: where it may be a step, that is looked up first.
+fn drift(tail: &TailDocument) -> Option<String> {
+    if let Some(step) = &tail.step_in_gap {
+        return Some(format!(
+            "Look up what was done between {} and {}: a step then explains the flights about as well as wear or dirt year by year.",
+            day(&step.after),
+            day(&step.until)
+        ));
+    }
+    tail.trend_percent_per_year.is_some_and(|trend| trend.ci95[0] > 0.0).then(|| {
+        "Wear, or dirt on engines or airframe: cruisefit diagnose says which of them fits the flights."
+            .to_owned()
+    })
+}
+
+/// The factor of the level with its interval, as it is entered: rounded up. Where it is that of flights too few for a trend, their
+/// number is said.
+fn plan_with(tail: &TailDocument) -> String {
+    let factor = &tail.airbus;
     let [low, high] = factor.fuel_factor_percent.ci95;
-    let interval = format!("95 % interval {} to {} %", signed(Some(low)), signed(Some(high)));
+    let few = match tail.trend_percent_per_year {
+        Some(_) => String::new(),
+        None => format!(", by {} alone", counted(tail.flights.len(), "flight")),
+    };
+    let interval = format!("95 % interval {} to {} %{few}", signed(Some(low)), signed(Some(high)));
     let entered = signed_tenths(factor.entered_fuel_factor_percent());
     match factor.performance_factor_percent {
         Some(percent) => format!(
@@ -227,6 +278,7 @@ mod tests {
         let fleet = |tails: usize, level: f64| FleetDocument {
             aircraft_type: "C750".to_owned(),
             tails,
+            reference: TypeConditions::from(&tail.reference),
             deviation_percent: Figure { value: level, ci95: [level - 0.5, level + 0.5] },
             between_tails_percent: 0.7,
             trend_percent_per_year: tail.trend_percent_per_year,
@@ -263,6 +315,7 @@ mod tests {
             size: tail.deviation_percent,
             unit: "%".to_owned(),
             since: tail.from.clone(),
+            step_in_gap: None,
             likely_causes: Vec::new(),
             no_likely_cause: Some("no cause stands out".to_owned()),
         };
@@ -294,6 +347,60 @@ mod tests {
     }
 
     #[test]
+    fn a_trend_that_may_be_a_step_is_no_wear_for_certain() {
+        let certain = tail((1.2, 0.2), (1.7, 0.4), &serde_json::json!([]));
+        let told = advice(&certain, &alone(&certain, &[]));
+        assert!(told[0].starts_with("Wear, or dirt"), "{told:?}");
+        let step = serde_json::json!({ "after": "2026-01-05T00:00:00Z", "until": "2026-02-20T00:00:00Z",
+            "step_percent": figure(1.5, 0.3) });
+        let doubted =
+            TailDocument { step_in_gap: serde_json::from_value(step).unwrap(), ..certain };
+        let words = "1.71 ± 0.41 % more each year, or 1.51 ± 0.30 % more since one step between 2026-01-05 and 2026-02-20";
+        assert!(found(&doubted).contains(words), "{}", found(&doubted));
+        let told = advice(&doubted, &alone(&doubted, &[]));
+        assert!(told[0].starts_with("Look up what was done between 2026-01-05"), "{told:?}");
+        assert!(!told.iter().any(|advice| advice.contains("Wear")), "{told:?}");
+    }
+
+    #[test]
+    fn few_flights_show_no_trend_and_are_counted_where_planned_with() {
+        let few = TailDocument {
+            trend_percent_per_year: None,
+            ..tail((1.2, 0.2), (0.0, 1.0), &serde_json::json!([]))
+        };
+        assert!(
+            found(&few).ends_with("; the flights are too few to show a trend."),
+            "{}",
+            found(&few)
+        );
+        let told = advice(&few, &alone(&few, &[]));
+        assert!(told[1].ends_with("+1.41 %, by 0 flights alone)."), "{told:?}");
+    }
+
+    /// Two tails that burn 2 % differently as they are flown, and alike at common conditions.
+    #[test]
+    fn tails_are_compared_at_common_conditions() {
+        let flown = |name: &str, level: f64, common: f64| TailDocument {
+            tail: name.to_owned(),
+            at_type_conditions_percent: Some(Figure {
+                value: common,
+                ci95: [common - 0.3, common + 0.3],
+            }),
+            ..tail((level, 0.2), (0.0, 1.0), &serde_json::json!([]))
+        };
+        let tails = vec![flown("N1", -1.0, -2.0), flown("N2", -3.0, -2.1)];
+        let document = MonitorDocument::new(tails, Vec::new());
+        let told = compared(&document.tails[0], &document).unwrap();
+        assert!(told.contains("it burns as much (+0.05 ± 0.30 %) as the 2 tails"), "{told}");
+        assert!(told.contains("its own are Mach 0.800, 0 ft, 0 kg"), "{told}");
+        let tails = vec![flown("N1", -2.0, -1.0), flown("N2", -2.0, -3.0)];
+        let document = MonitorDocument::new(tails, Vec::new());
+        let told = compared(&document.tails[0], &document).unwrap();
+        assert!(told.contains("it burns 1.01 ± 0.30 % more than the 2 tails"), "{told}");
+        assert_eq!(compared(&document.tails[0], &alone(&document.tails[0], &[])), None);
+    }
+
+    #[test]
     fn a_diagnosis_at_hand_is_quoted_of_its_own_tail_alone() {
         let tail = tail((-1.2, 0.2), (0.0, 1.0), &serde_json::json!([]));
         let alert = |name: &str| AlertDocument {
@@ -303,6 +410,7 @@ mod tests {
             size: tail.deviation_percent,
             unit: "%".to_owned(),
             since: tail.from.clone(),
+            step_in_gap: None,
             likely_causes: vec![format!("cause_of_{name}")],
             no_likely_cause: None,
         };

@@ -1,6 +1,7 @@
 //! A tail's flights in the order of flying, and the conditions to which their deviations are normalised.
 
 use flight::{Segment, Timestamp};
+use monitor::CONDITIONS;
 
 use super::flights::{MeanConditions, MonitoredFlight, flights_of, flights_with, monitored};
 use crate::evaluation::{TailResult, evaluate, evaluate_model};
@@ -39,6 +40,8 @@ pub struct TailDeviations {
     pub reference: MeanConditions,
     /// What the learnt model predicts more than the initial one, mean over the same segments, %.
     pub level_percent: f64,
+    /// What they are normalised to, flight by flight: conditions as `monitor` has them, and segments inside the table.
+    pub of_level: Vec<([f64; CONDITIONS], f64)>,
 }
 
 impl TailDeviations {
@@ -97,7 +100,12 @@ impl TailDeviations {
         let over = flights
             .iter()
             .map(|flight| flight.conditions.segments as f64 * flight.learnt_over_initial_percent);
+        let conditions = flights.iter().map(|flight| flight.conditions);
+        let of_level = conditions
+            .filter(|conditions| conditions.segments > 0)
+            .map(|conditions| (conditions.to_monitor(&reference), conditions.segments as f64));
         Self {
+            of_level: of_level.collect(),
             aircraft_type: aircraft_type.to_owned(),
             model: model.to_owned(),
             reference,

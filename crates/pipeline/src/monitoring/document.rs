@@ -1,9 +1,9 @@
 //! What `monitor` found, as types that become JSON, tables and text.
 
-use monitor::{Estimate, FleetMean, airbus, fleet_mean};
+use monitor::{Estimate, airbus};
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use super::fleet::{fleet, types_of};
 use super::flights::MeanConditions;
 
 /// Name and version of the JSON.
@@ -71,10 +71,16 @@ pub struct TailDocument {
     pub reference: MeanConditions,
     /// Level at the last flight.
     pub deviation_percent: Figure,
+    /// The same at the mean conditions of the tails of its type, by which these are compared; absent of the only one.
+    #[serde(default)]
+    pub at_type_conditions_percent: Option<Figure>,
     /// Mean of deviations by the model before it learnt each flight; absent where it was not rebuilt.
     pub before_learning_percent: Option<Figure>,
-    /// Trend between changes.
-    pub trend_percent_per_year: Figure,
+    /// Trend between changes; absent where the flights say next to nothing of it.
+    pub trend_percent_per_year: Option<Figure>,
+    /// A step, while the aircraft did not fly, that the trend may be in place of.
+    #[serde(default)]
+    pub step_in_gap: Option<StepInGapDocument>,
     /// Standard deviation of a segment about its flight.
     pub within_flight_percent: f64,
     /// Standard deviation of what a flight keeps.
@@ -140,6 +146,17 @@ pub struct CostDocument {
     pub co2_kg_per_year: Option<f64>,
     /// Price a year.
     pub price_per_year: Option<f64>,
+}
+
+/// A step in a time without flights, which explains the flights about as well as a trend.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepInGapDocument {
+    /// Start of the last flight before that time.
+    pub after: String,
+    /// Start of the first flight since.
+    pub until: String,
+    /// Size.
+    pub step_percent: Figure,
 }
 
 /// A change.
@@ -254,14 +271,29 @@ pub struct FleetDocument {
     pub aircraft_type: String,
     /// Tails.
     pub tails: usize,
-    /// Mean of the tails' present levels.
+    /// Mean conditions of its tails, each counted alike, at which these are compared.
+    pub reference: TypeConditions,
+    /// Mean of the tails' present levels there.
     pub deviation_percent: Figure,
     /// Standard deviation between tails beyond the uncertainty of each.
     pub between_tails_percent: f64,
-    /// Mean of the tails' trends.
-    pub trend_percent_per_year: Figure,
+    /// Mean of the trends of the tails whose flights show one; absent where none does.
+    pub trend_percent_per_year: Option<Figure>,
     /// Months: means over the tails that flew in them.
     pub months: Vec<FleetMonthDocument>,
+}
+
+/// Conditions at which the tails of a type are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TypeConditions {
+    /// Mean pressure altitude, m.
+    pub pressure_altitude_m: f64,
+    /// Mean Mach number.
+    pub mach: f64,
+    /// Mean static air temperature, K.
+    pub static_air_temperature_k: f64,
+    /// Mean gross mass, kg.
+    pub mass_kg: f64,
 }
 
 /// A month of a fleet.
@@ -291,6 +323,9 @@ pub struct AlertDocument {
     pub unit: String,
     /// Since when.
     pub since: String,
+    /// Of a trend: the step that it may be in place of.
+    #[serde(default)]
+    pub step_in_gap: Option<StepInGapDocument>,
     /// Effects that the newest diagnosis of the tail names, where one is given and a cause stands out there.
     pub likely_causes: Vec<String>,
     /// Why that diagnosis names none, in words for a person.
@@ -302,10 +337,7 @@ impl MonitorDocument {
     /// The document of these tails, in their order, with the fleets that they make up.
     #[must_use]
     pub fn new(tails: Vec<TailDocument>, alerts: Vec<AlertDocument>) -> Self {
-        let mut types: Vec<&str> = tails.iter().map(|tail| tail.aircraft_type.as_str()).collect();
-        types.sort_unstable();
-        types.dedup();
-        let fleet = types.into_iter().filter_map(|of_type| fleet(of_type, &tails)).collect();
+        let fleet = types_of(&tails).iter().filter_map(|of_type| fleet(of_type, &tails)).collect();
         Self { schema: SCHEMA, tails, fleet, alerts }
     }
 
@@ -347,53 +379,4 @@ impl MonitorDocument {
 struct Written {
     tails: Vec<TailDocument>,
     alerts: Vec<AlertDocument>,
-}
-
-fn fleet(aircraft_type: &str, tails: &[TailDocument]) -> Option<FleetDocument> {
-    let of_type: Vec<&TailDocument> =
-        tails.iter().filter(|tail| tail.aircraft_type == aircraft_type).collect();
-    let mean = |of: &dyn Fn(&TailDocument) -> Option<Figure>| -> Option<FleetMean> {
-        let figures: Vec<Estimate> =
-            of_type.iter().filter_map(|tail| of(tail)).map(|figure| estimate(&figure)).collect();
-        fleet_mean(&figures)
-    };
-    let deviation = mean(&|tail| Some(tail.deviation_percent))?;
-    let trend = mean(&|tail| Some(tail.trend_percent_per_year))?;
-    let mut names: Vec<&str> =
-        of_type.iter().flat_map(|tail| tail.months.iter().map(|m| m.month.as_str())).collect();
-    names.sort_unstable();
-    names.dedup();
-    let months = names
-        .into_iter()
-        .filter_map(|name| {
-            let found = mean(&|tail| {
-                tail.months.iter().find(|m| m.month == name).map(|m| m.deviation_percent)
-            })?;
-            Some(FleetMonthDocument {
-                month: name.to_owned(),
-                tails: found.tails,
-                deviation_percent: of_tails(&found),
-            })
-        })
-        .collect();
-    Some(FleetDocument {
-        aircraft_type: aircraft_type.to_owned(),
-        tails: deviation.tails,
-        deviation_percent: of_tails(&deviation),
-        between_tails_percent: deviation.between_tails,
-        trend_percent_per_year: of_tails(&trend),
-        months,
-    })
-}
-
-/// A mean over tails with its interval: Student's, and of a tail alone its own.
-fn of_tails(found: &FleetMean) -> Figure {
-    let student = StudentsT::new(0.0, 1.0, found.freedom() as f64).ok();
-    let factor = student.map_or(monitor::NORMAL_95, |student| student.inverse_cdf(0.975));
-    let (value, half) = (found.mean.value, factor * found.mean.deviation);
-    Figure { value, ci95: [value - half, value + half] }
-}
-
-fn estimate(figure: &Figure) -> Estimate {
-    Estimate { value: figure.value, deviation: figure.half_width() / monitor::NORMAL_95 }
 }

@@ -45,13 +45,14 @@ impl MonitorDocument {
         self.fleet.len() > 1
     }
 
-    /// By how much a tail's present level is above the mean of the tails of its type, %, with the interval of the tail's level:
-    /// the mean is what these tails are compared with, whatever it is. `None` of the only tail of its type.
+    /// By how much a tail's present level is above the mean of the tails of its type, at the mean conditions of all of them, %, with
+    /// the interval of the tail's level there: the mean is what these tails are compared with, whatever it is. `None` of the only
+    /// tail of its type.
     #[must_use]
     pub fn against_type(&self, tail: &TailDocument) -> Option<Figure> {
         let fleet = self.fleet.iter().find(|fleet| fleet.aircraft_type == tail.aircraft_type)?;
         let mean = fleet.deviation_percent.value;
-        (fleet.tails > 1).then(|| tail.deviation_percent.map(|percent| percent - mean))
+        (fleet.tails > 1).then(|| tail.compared_percent().map(|percent| percent - mean))
     }
 }
 
@@ -116,6 +117,7 @@ mod tests {
             size: document.tails[5].deviation_percent,
             unit: "%".to_owned(),
             since: String::new(),
+            step_in_gap: None,
             likely_causes: Vec::new(),
             no_likely_cause: None,
         };

@@ -1,6 +1,6 @@
 //! Every result as tables of columns: one row per flight, month, change, event, tail, month of a fleet, alert.
 
-use super::document::{Figure, MonitorDocument, TailDocument};
+use super::document::{Figure, MonitorDocument, StepInGapDocument, TailDocument};
 use crate::columns::Columns;
 
 /// A table and the name of its file, without ending.
@@ -62,6 +62,20 @@ fn figure<'a, R: 'a>(
     }
 }
 
+/// Adds the step that a trend may be in place of, and between which flights it is.
+fn step_in_gap<'a, R: 'a>(
+    columns: &mut Columns,
+    rows: &'a [R],
+    of: impl Fn(&'a R) -> Option<&'a StepInGapDocument> + Copy,
+) {
+    let flight = |which: fn(&StepInGapDocument) -> &String| {
+        rows.iter().map(move |row| of(row).map(which).cloned().unwrap_or_default())
+    };
+    columns.text("step_in_gap_after", flight(|step| &step.after));
+    columns.text("step_in_gap_until", flight(|step| &step.until));
+    figure(columns, "step_in_gap_percent", rows, |row| of(row).map(|step| step.step_percent));
+}
+
 fn rows_of<'a, T>(
     tails: &'a [TailDocument],
     of: impl Fn(&'a TailDocument) -> &'a [T],
@@ -82,7 +96,11 @@ fn tails(document: &MonitorDocument) -> Columns {
     columns.text("from", rows.iter().map(|tail| tail.from.clone()));
     columns.text("to", rows.iter().map(|tail| tail.to.clone()));
     figure(&mut columns, "deviation_percent", rows, |tail| Some(tail.deviation_percent));
-    figure(&mut columns, "trend_percent_per_year", rows, |tail| Some(tail.trend_percent_per_year));
+    figure(&mut columns, "at_type_conditions_percent", rows, |tail| {
+        tail.at_type_conditions_percent
+    });
+    figure(&mut columns, "trend_percent_per_year", rows, |tail| tail.trend_percent_per_year);
+    step_in_gap(&mut columns, rows, |tail| tail.step_in_gap.as_ref());
     figure(&mut columns, "before_learning_percent", rows, |tail| tail.before_learning_percent);
     let number = |of: fn(&TailDocument) -> Option<f64>| rows.iter().map(of);
     columns.number("within_flight_percent", number(|t| Some(t.within_flight_percent)));
@@ -241,6 +259,7 @@ fn alerts(document: &MonitorDocument) -> Columns {
     figure(&mut columns, "size", rows, |alert| Some(alert.size));
     columns.text("unit", rows.iter().map(|alert| alert.unit.clone()));
     columns.text("since", rows.iter().map(|alert| alert.since.clone()));
+    step_in_gap(&mut columns, rows, |alert| alert.step_in_gap.as_ref());
     columns.text("likely_causes", rows.iter().map(|alert| alert.likely_causes.join(" ")));
     columns
 }

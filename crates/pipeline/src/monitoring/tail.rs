@@ -8,14 +8,15 @@ use flight::Timestamp;
 use monitor::airbus;
 use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
 use monitor::{
-    AlertRule, Bearing, Change, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Noise,
-    Series, SeriesError, months, weighted_mean_percent, years_between,
+    AlertRule, Bearing, CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation,
+    FlownConditions, FlownFlight, History, Month, Noise, Series, SeriesError, months,
+    weighted_mean_percent, years_between,
 };
 
 use super::deviations::{BeforeLearning, TailDeviations};
 use super::document::{
     AirbusTerms, ChangeDocument, CostDocument, EventDocument, Figure, FlightDocument,
-    MonthDocument, TailDocument,
+    MonthDocument, StepInGapDocument, TailDocument,
 };
 use super::events::Event;
 use super::flights::{MeanConditions, MonitoredFlight};
@@ -74,6 +75,7 @@ pub struct MonitoredTail<'a> {
     model: &'a str,
     flights: Vec<&'a MonitoredFlight>,
     reference: MeanConditions,
+    of_level: &'a [([f64; CONDITIONS], f64)],
     /// Flights a year, those without a segment inside the table too; `None` over less than a month.
     recorded_per_year: Option<f64>,
     events: Vec<&'a Event>,
@@ -179,6 +181,7 @@ impl<'a> MonitoredTail<'a> {
             model: &deviations.model,
             flights,
             reference,
+            of_level: &deviations.of_level,
             recorded_per_year: recorded_per_year(&deviations.flights),
             events,
             history,
@@ -204,8 +207,14 @@ impl<'a> MonitoredTail<'a> {
             to: date(self.flights.last()),
             reference: self.reference,
             deviation_percent: level.into(),
+            at_type_conditions_percent: None,
             before_learning_percent: self.before_learning_mean(0..self.flights.len()),
-            trend_percent_per_year: self.history.levels.trend_percent_per_year().into(),
+            trend_percent_per_year: self
+                .history
+                .levels
+                .measured_trend_percent_per_year()
+                .map(Figure::from),
+            step_in_gap: self.step_in_gap(),
             within_flight_percent: noise.within_flight_percent,
             between_flights_percent: noise.between_flights_percent,
             correlation: noise.correlation,
@@ -220,6 +229,36 @@ impl<'a> MonitoredTail<'a> {
             flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
             months,
         }
+    }
+
+    /// Its flights by the conditions flown: what each deviates by the initial model there, less what the level has changed since.
+    #[must_use]
+    pub fn flown_conditions(&self) -> FlownConditions {
+        let levels = &self.history.levels;
+        let now = levels.last_level_percent(self.series()).value;
+        let flown = |(index, flight): (usize, &&MonitoredFlight)| {
+            let then = levels.level_percent(index, self.series().years(flight.start)).value;
+            Some(FlownFlight {
+                conditions: flight.conditions.to_monitor(&self.reference),
+                deviation_percent: flight.initial?.deviation_percent() - (then - now),
+                weight: self.history.weights[index],
+            })
+        };
+        FlownConditions {
+            flights: self.flights.iter().enumerate().filter_map(flown).collect(),
+            of_level: self.of_level.to_vec(),
+        }
+    }
+
+    /// The step that its trend may be in place of.
+    fn step_in_gap(&self) -> Option<StepInGapDocument> {
+        let step = self.history.step_in_gap?;
+        let start = |flight: usize| self.flights[flight].start.to_string();
+        Some(StepInGapDocument {
+            after: start(step.first_flight - 1),
+            until: start(step.first_flight),
+            step_percent: step.step_percent.into(),
+        })
     }
 
     /// What its flights would have shown at their mean conditions.

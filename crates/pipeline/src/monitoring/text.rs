@@ -2,7 +2,7 @@
 
 use core::fmt::Write;
 
-use super::document::{Figure, MonitorDocument, TailDocument};
+use super::document::{Figure, MonitorDocument, StepInGapDocument, TailDocument};
 use crate::summary::{aligned, counted};
 
 /// What the table has a row for.
@@ -30,12 +30,13 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     for fleet in document.fleet.iter().filter(|fleet| fleet.tails > 1) {
         let _ = writeln!(
             text,
-            "Fleet {}: {}, mean {} %, std between tails {:.2} %,\n  trend {} %/year.",
+            "Fleet {}: {}, mean {} %, std between tails {:.2} %,\n  trend {} %/year; at {}.",
             fleet.aircraft_type,
             counted(fleet.tails, "tail"),
             signed(&fleet.deviation_percent),
             fleet.between_tails_percent,
-            signed(&fleet.trend_percent_per_year),
+            or_dash(fleet.trend_percent_per_year.as_ref()),
+            fleet.reference.in_words(),
         );
     }
     for tail in &document.tails {
@@ -51,13 +52,14 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
         };
         let _ = writeln!(
             text,
-            "ALERT {}{}: {} {} since {} ({}){causes}",
+            "ALERT {}{}: {} {} since {} ({}){}{causes}",
             alert.tail,
             of_engine(alert.engine),
             signed(&alert.size),
             alert.unit,
             date(&alert.since),
             alert.rule,
+            alert.step_in_gap.as_ref().map_or_else(String::new, or_step),
         );
     }
     text.push_str(SIGNS);
@@ -68,6 +70,12 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
         }
         Rows::Months => "Factor: mean of three months' fuel factors, rounded up to 0.1 %.\n",
     });
+    if document.fleet.iter().any(|fleet| fleet.tails > 1) {
+        text.push_str(
+            "A fleet's levels, and the order of its tails (after what is new): at the\n\
+             mean conditions of its tails, counted alike.\n",
+        );
+    }
     text.push_str(
         "A change has the 95 % interval of its date and the probability p of a change.\n",
     );
@@ -96,7 +104,7 @@ fn tails(document: &MonitorDocument) -> String {
             airbus
                 .specific_range_deviation_std_percent
                 .map_or_else(|| "–".to_owned(), |std| format!("{std:.2}")),
-            signed(&tail.trend_percent_per_year),
+            or_dash(tail.trend_percent_per_year.as_ref()),
         ]);
         rows.push(row);
     }
@@ -145,7 +153,7 @@ fn months(document: &MonitorDocument) -> String {
                 month.month.clone(),
                 month.flights.to_string(),
                 signed(&month.deviation_percent),
-                month.before_learning_percent.as_ref().map_or_else(|| "–".to_owned(), signed),
+                or_dash(month.before_learning_percent.as_ref()),
                 plain(month.specific_range_deviation_percent.value, 2),
                 plain(month.retained_fuel_factor_percent, 1),
             ]);
@@ -163,6 +171,10 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
             tail.flights_without_engines,
             counted(tail.flights.len(), "flight"),
         );
+    }
+    if let Some(step) = &tail.step_in_gap {
+        let trend = or_dash(tail.trend_percent_per_year.as_ref());
+        let _ = writeln!(text, "{}: trend {trend} %/year{}", tail.tail, or_step(step));
     }
     for change in &tail.changes {
         let _ = writeln!(
@@ -200,6 +212,16 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
     }
 }
 
+/// What a trend may be in place of, on a line of its own.
+fn or_step(step: &StepInGapDocument) -> String {
+    format!(
+        ",\n  or one step of {} % between {} and {}",
+        signed(&step.step_percent),
+        date(&step.after),
+        date(&step.until),
+    )
+}
+
 fn of_engine(engine: Option<usize>) -> String {
     engine.map_or_else(String::new, |engine| format!(" engine {engine}"))
 }
@@ -207,6 +229,11 @@ fn of_engine(engine: Option<usize>) -> String {
 /// `+1.23 ± 0.20`.
 fn signed(figure: &Figure) -> String {
     format!("{} ± {:.2}", plain(figure.value, 2), figure.half_width())
+}
+
+/// The same, or a dash.
+fn or_dash(figure: Option<&Figure>) -> String {
+    figure.map_or_else(|| "–".to_owned(), signed)
 }
 
 /// With its sign.

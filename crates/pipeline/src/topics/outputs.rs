@@ -15,7 +15,7 @@ const fn output(name: &'static str, unit: &'static str, words: &'static str) -> 
 }
 
 /// Those whose name does not say all, by command.
-pub(super) const OUTPUTS: [Output; 35] = [
+pub(super) const OUTPUTS: [Output; 37] = [
     output("acceleration_m_s2", "m/s²", "Segments: mean rate of change of ground speed."),
     output("temperature_assumed", "0, 1", "Segments: 1 where SAT was assumed and not recorded."),
     output(
@@ -172,7 +172,22 @@ pub(super) const OUTPUTS: [Output; 35] = [
     ),
     output("since_ci95", "-", "monitor: the first flights between which a change lies with 95 %."),
     output("step_percent", "%", "monitor: size of a change: positive, more is burnt afterwards."),
-    output("trend_percent_per_year", "%/year", "monitor: drift between changes."),
+    output(
+        "trend_percent_per_year",
+        "%/year",
+        "monitor: drift between changes; none where the flights say next to nothing of it.",
+    ),
+    output(
+        "at_type_conditions_percent",
+        "%",
+        "monitor: the present level at the mean conditions of all tails of the type, by which they are compared.",
+    ),
+    output(
+        "step_in_gap_percent",
+        "%",
+        "monitor: a step while the aircraft did not fly, which explains the flights about as well as the\n\
+         trend does: it is one or the other.",
+    ),
 ];
 
 /// An output in words, by its name.

@@ -58,6 +58,10 @@ impl MonitoredTail<'_> {
             }
             .to_owned(),
             since: alert.since.to_string(),
+            step_in_gap: match alert.rule {
+                AlertRule::Trend { .. } => self.step_in_gap(),
+                AlertRule::Deviation { .. } | AlertRule::Change { .. } => None,
+            },
             likely_causes: Vec::new(),
             no_likely_cause: None,
         }
