@@ -21,6 +21,8 @@ const USUAL_WIDTH: usize = 80;
 const LEAST_WIDTH: usize = 20;
 /// Refusals for one reason that a person still reads one by one.
 const REFUSALS_OF_A_KIND: usize = 5;
+/// Refusals in one file that are told one by one: of a million points many thousands may lie outside a table.
+const REFUSALS_OF_A_FILE: usize = 20;
 
 /// How the two streams are written in this run.
 static TERMINAL: OnceLock<Terminal> = OnceLock::new();
@@ -137,7 +139,8 @@ pub(crate) fn print_data(bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Refused reports to standard error: one line each; more than five of one tail for one reason that is the tail's ("tail T flight 7
-/// is in the model's ledger") in one line with their number. On a terminal those beyond the fifth of one kind are counted.
+/// is in the model's ledger") in one line with their number. Those beyond the twentieth line of one file are counted, on a terminal
+/// those beyond the fifth of one kind.
 pub(crate) fn tell_refused(refused: &[RefusedReport]) {
     let terminal = Terminal::of_run();
     let most = if terminal.err.width.is_some() { REFUSALS_OF_A_KIND } else { usize::MAX };
@@ -148,6 +151,7 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
     }
     of_tails.retain(|_, count| *count > REFUSALS_OF_A_KIND);
     let mut folded = BTreeSet::new();
+    let mut lines_of_files: BTreeMap<&std::path::Path, usize> = BTreeMap::new();
     // Several flights of a recording may be refused for the same reason.
     for alike in refused.chunk_by(|one, other| one == other) {
         let one = &alike[0];
@@ -164,6 +168,11 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
             continue;
         }
         if told.is_told(&one.reason) {
+            let lines = lines_of_files.entry(&one.path).or_default();
+            *lines += 1;
+            if *lines > REFUSALS_OF_A_FILE {
+                continue;
+            }
             let is_first = told.count(&one.reason) == 1;
             let times = match alike.len() {
                 1 => String::new(),
@@ -173,6 +182,12 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
             if let (true, Some(line)) = (is_first, one.line) {
                 tell_excerpt(&one.path, line, one.column, &one.reason);
             }
+        }
+    }
+    for (path, lines) in lines_of_files {
+        let more = lines.saturating_sub(REFUSALS_OF_A_FILE);
+        if more > 0 {
+            tell(&format!("refused: {}: {more} more\n", path.display()));
         }
     }
     for (reason, more) in told.untold() {

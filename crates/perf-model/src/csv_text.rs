@@ -19,6 +19,21 @@ pub(crate) struct Column {
     pub(crate) maximum: f64,
 }
 
+/// Columns that a file may have, and names beside them that it may have without a meaning.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known<'a> {
+    pub(crate) columns: &'a [Column],
+    pub(crate) without_meaning: &'a [&'a str],
+}
+
+impl Known<'_> {
+    fn has(self, name: &str) -> bool {
+        name.starts_with("X-")
+            || self.columns.iter().any(|column| column.name == name)
+            || self.without_meaning.contains(&name)
+    }
+}
+
 /// Why text is not a guide or a list of flight points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}{}: {reason}", At(.column.as_ref()))]
@@ -174,7 +189,7 @@ pub(crate) struct Row {
 
 impl CsvText {
     /// Splits the text and checks the header against the columns the file may have.
-    pub(crate) fn read(text: &[u8], known: &[Column]) -> Result<Self, CsvError> {
+    pub(crate) fn read(text: &[u8], known: Known<'_>) -> Result<Self, CsvError> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true) // lengths are compared here, for a message with line and counts
@@ -192,7 +207,7 @@ impl CsvText {
         }
         let mut rows = rows.into_iter();
         let Some(Row { line: header_line, fields: header }) = rows.next() else {
-            return Err(CsvError::new(1, CsvErrorReason::NoHeader { known: names(known) }));
+            return Err(CsvError::new(1, CsvErrorReason::NoHeader { known: names(known.columns) }));
         };
         check_header(header_line, &header, known)?;
         let rows: Vec<Row> = rows.collect();
@@ -212,7 +227,7 @@ impl CsvText {
     }
 
     /// A header whose rows are somewhere else, checked like that of a text.
-    pub(crate) fn of_header(header: Vec<String>, known: &[Column]) -> Result<Self, CsvError> {
+    pub(crate) fn of_header(header: Vec<String>, known: Known<'_>) -> Result<Self, CsvError> {
         check_header(1, &header, known)?;
         Ok(Self { header_line: 1, header, rows: Vec::new() })
     }
@@ -309,7 +324,7 @@ impl CsvText {
 }
 
 impl CsvError {
-    /// Whether nothing but a value is missing: an empty field, or `-`, where a number is needed.
+    /// Whether nothing but a value is missing: an empty field, `-` or NaN, where a number is needed.
     #[must_use]
     pub fn is_missing_value(&self) -> bool {
         matches!(&self.reason, CsvErrorReason::NotANumber { found } if !is_available(found))
@@ -325,9 +340,10 @@ pub(crate) fn within(column: &Column, value: f64) -> Result<f64, OutOfDomain> {
     check_within(column.quantity, column.unit, value, column.minimum, column.maximum)
 }
 
-/// Whether a field has a value.
+/// Whether a field has a value: NaN is none, as programs write it that have no other word.
 pub(crate) fn is_available(field: &str) -> bool {
-    !matches!(field.trim(), "" | "-")
+    let field = field.trim();
+    !matches!(field, "" | "-") && !field.eq_ignore_ascii_case("nan")
 }
 
 /// `, column 4 (fuel_flow_lb_h)`, or empty.
@@ -342,7 +358,7 @@ impl fmt::Display for At<'_> {
     }
 }
 
-fn check_header(line: u64, header: &[String], known: &[Column]) -> Result<(), CsvError> {
+fn check_header(line: u64, header: &[String], known: Known<'_>) -> Result<(), CsvError> {
     // A header can hold a hundred thousand names.
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (index, name) in header.iter().enumerate() {
@@ -355,10 +371,10 @@ fn check_header(line: u64, header: &[String], known: &[Column]) -> Result<(), Cs
         if let Some(first) = places.insert(name, index) {
             return Err(error(CsvErrorReason::DuplicatedColumn { first: first + 1 }));
         }
-        if !name.starts_with("X-") && known.iter().all(|column| column.name != name) {
+        if !known.has(name) {
             let between = |mark: &char| header.len() == 1 && name.contains(*mark);
             let other = [';', '\t', '|'].into_iter().find(between);
-            let unknown = || CsvErrorReason::UnknownColumn { known: names(known) };
+            let unknown = || CsvErrorReason::UnknownColumn { known: names(known.columns) };
             let reason =
                 other.map_or_else(unknown, |found| CsvErrorReason::OtherSeparator { found });
             return Err(error(reason));
@@ -399,7 +415,7 @@ fn line_of(text: &[u8], position: Option<&csv::Position>) -> u64 {
 }
 
 /// A finite decimal number: what `f64` reads, without its words for infinity and NaN.
-fn parse_number(text: &str) -> Option<f64> {
+pub(crate) fn parse_number(text: &str) -> Option<f64> {
     let decimal =
         text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
     let value: f64 = if decimal { text.parse().ok()? } else { return None };

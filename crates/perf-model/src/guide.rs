@@ -11,7 +11,7 @@ use crate::columns::{
     FUEL_FLOW_PER_ENGINE_LB_H, ISA_DEVIATION_C, MACH, MASS_KG, MAXIMUM_MACH, MINIMUM_MACH,
     PRESSURE_ALTITUDE_FT, TRUE_AIRSPEED_KT, WEIGHT_LB,
 };
-use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row};
+use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Known, Row};
 
 /// A flight-planning guide: level, unaccelerated cruise, one row per condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,7 +131,7 @@ pub(crate) fn fuel_flow_in(column: &Column, value: f64) -> FuelFlowTotal {
 }
 
 fn read(text: &[u8], engines: Option<u8>) -> Result<Guide, CsvError> {
-    let file = CsvText::read(text, &COLUMNS)?;
+    let file = CsvText::read(text, Known { columns: &COLUMNS, without_meaning: &[] })?;
     let columns = Columns {
         mass: file.require_one_of(&[&WEIGHT_LB, &MASS_KG])?,
         altitude: file.require_one_of(&[&PRESSURE_ALTITUDE_FT, &FLIGHT_LEVEL])?,

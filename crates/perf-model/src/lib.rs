@@ -64,5 +64,8 @@ pub use model::{
     LevelBlock, LevelFlights, LevelPrediction, ModelError, ObserveError, OutsideTable,
     PerformanceModel, PredictError, Prediction, SegmentPrediction,
 };
-pub use points::{FlightPoint, FlightPointRow, FlightPoints, LevelColumns, PointCell, PointTable};
+pub use points::{
+    FlightPoint, FlightPointRow, FlightPoints, LevelColumns, PREDICTED_COLUMNS, PointCell,
+    PointTable,
+};
 pub use state::SegmentState;

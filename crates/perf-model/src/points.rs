@@ -11,7 +11,9 @@ use crate::columns::{
     ANTI_ICE, CG_PERCENT_MAC, DATE, FLIGHT_LEVEL, FUEL_FLOW_KG_H, FUEL_FLOW_LB_H, ISA_DEVIATION_C,
     LATITUDE_DEG, MACH, MASS_KG, PRESSURE_ALTITUDE_FT, TRUE_HEADING_DEG, WEIGHT_LB,
 };
-use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row, is_available};
+use crate::csv_text::{
+    Column, CsvError, CsvErrorReason, CsvText, Known, Row, is_available, parse_number,
+};
 use crate::guide::{fuel_flow_in, mass_in, pressure_altitude_in};
 
 mod table;
@@ -32,7 +34,7 @@ pub struct FlightPointRow {
     pub line: u64,
     /// Fields as sent, as many as the header has names.
     pub fields: Vec<String>,
-    /// Their meaning; the error of a needed value that is missing ([`CsvError::is_missing_value`]).
+    /// Their meaning, or why they have none ([`CsvError::costs_its_row`]).
     pub point: Result<FlightPoint, CsvError>,
 }
 
@@ -78,22 +80,38 @@ const COLUMNS: [Column; 13] = [
     TRUE_HEADING_DEG,
 ];
 
+/// Columns that a prediction adds to its flight points: when its result is given again they have no meaning.
+pub const PREDICTED_COLUMNS: [&str; 9] = [
+    "fuel_flow_kg_s",
+    "fuel_flow_std_kg_s",
+    "specific_range_m_kg",
+    "lift_coefficient",
+    "drag_coefficient",
+    "extrapolated",
+    "error_percent",
+    "remainder_percent",
+    "beyond_flights",
+];
+
+const KNOWN: Known<'_> = Known { columns: &COLUMNS, without_meaning: &PREDICTED_COLUMNS };
+
 impl FlightPoints {
     /// Reads flight points.
     ///
     /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft` or `flight_level`; `mach`;
     /// optionally `isa_deviation_c` (otherwise the ISA), `fuel_flow_lb_h` or `fuel_flow_kg_h`, `date`,
-    /// `cg_percent_mac`, `anti_ice`, `latitude_deg`, `true_heading_deg`. An empty field or `-` means "not available": in a column
-    /// that is needed, and in `isa_deviation_c`, the row is then without a point. Columns whose name begins with `X-` are kept and
-    /// have no meaning.
+    /// `cg_percent_mac`, `anti_ice`, `latitude_deg`, `true_heading_deg`. An empty field, `-` or NaN means "not available": in a column
+    /// that is needed, and in `isa_deviation_c`, the row is then without a point, as with a deviation out of its limits. Columns
+    /// whose name begins with `X-`, and [`PREDICTED_COLUMNS`], are kept and have no meaning.
     ///
     /// # Errors
-    /// [`CsvError`] at the first fault, as for [`Guide::from_csv`](crate::Guide::from_csv), but for values that are missing.
+    /// [`CsvError`] at the first fault, as for [`Guide::from_csv`](crate::Guide::from_csv), but for those that cost a row alone
+    /// ([`CsvError::costs_its_row`]).
     pub fn from_csv(text: &[u8]) -> Result<Self, CsvError> {
-        let file = CsvText::read(text, &COLUMNS)?;
+        let file = CsvText::read(text, KNOWN)?;
         let columns = Columns::find_in(&file)?;
         let point = |row| match columns.point(&file, row) {
-            Err(error) if !error.is_missing_value() => Err(error),
+            Err(error) if !error.costs_its_row() => Err(error),
             point => Ok(point),
         };
         let points = file.rows.iter().map(point).collect::<Result<Vec<_>, _>>()?;
@@ -232,115 +250,41 @@ fn anti_ice(file: &CsvText, row: &Row, index: Option<usize>) -> Result<Option<bo
     let Some(index) = index.filter(|&index| is_available(&row.fields[index])) else {
         return Ok(None);
     };
-    match row.fields[index].trim() {
-        "0" => Ok(Some(false)),
-        "1" => Ok(Some(true)),
-        found => Err(file.error(row, index, CsvErrorReason::NotZeroOrOne { found: found.into() })),
+    let found = row.fields[index].trim();
+    on_or_off(found)
+        .map(Some)
+        .ok_or_else(|| file.error(row, index, CsvErrorReason::NotZeroOrOne { found: found.into() }))
+}
+
+/// 0 and 1 however they are written (`1.0`), and the words for them.
+fn on_or_off(text: &str) -> Option<bool> {
+    let number = parse_number(text).map(f64::to_bits);
+    let is =
+        |value: f64, word: &str| number == Some(value.to_bits()) || text.eq_ignore_ascii_case(word);
+    match (is(0.0, "false"), is(1.0, "true")) {
+        (true, _) => Some(false),
+        (_, true) => Some(true),
+        _ => None,
+    }
+}
+
+impl CsvError {
+    /// Whether the fault is one of a row alone, and not of a file: a value that is missing, or a deviation from the ISA out of its
+    /// limits, which a wrong temperature makes. Other absurd values are those of a column in another unit.
+    #[must_use]
+    pub fn costs_its_row(&self) -> bool {
+        let is_of_deviation = || {
+            self.column.as_ref().is_some_and(|column| column.name == ISA_DEVIATION_C.name)
+                && match &self.reason {
+                    CsvErrorReason::OutOfDomain { .. } => true,
+                    // Infinite.
+                    CsvErrorReason::NotANumber { found } => found.parse::<f64>().is_ok(),
+                    _ => false,
+                }
+        };
+        self.is_missing_value() || is_of_deviation()
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn all_columns_and_the_rows_as_sent() {
-        let text = "date,weight_lb,pressure_altitude_ft,mach,isa_deviation_c,fuel_flow_kg_h,\
-                    cg_percent_mac,anti_ice,latitude_deg,true_heading_deg,X-note\n\
-                    2018-05-20, 30000,43000,0.82,-5,730.3,25.5,1,-45,270,\"first, best\"\n\
-                    2018-05-20T14:14:21+02:00,30000,43000,.82,0,-,,0,,,\n";
-        let points = FlightPoints::from_csv(text.as_bytes()).unwrap();
-        assert_eq!(points.header().len(), 11);
-        let [first, second] = points.rows() else { panic!("{points:?}") };
-        assert_eq!((first.line, second.line), (2, 3));
-        assert_eq!(first.fields[1], " 30000");
-        assert_eq!(first.fields[10], "first, best");
-        let point = first.point.clone().unwrap();
-        assert_eq!(point.date, Some("2018-05-20T00:00:00Z".parse().unwrap()));
-        assert!((point.mass.to_pounds() - 30_000.0).abs() < 1e-9);
-        assert!((point.pressure_altitude.to_feet() - 43_000.0).abs() < 1e-9);
-        assert!((point.static_air_temperature().unwrap().to_kelvin() - 211.65).abs() < 1e-9);
-        let flow = point.measured_fuel_flow_total.unwrap().to_kilograms_per_hour();
-        assert!((flow - 730.3).abs() < 1e-9);
-        assert_eq!(point.center_of_gravity_percent_mac, Some(25.5));
-        assert_eq!(point.anti_ice, Some(true));
-        assert!((point.latitude.unwrap().to_degrees() + 45.0).abs() < 1e-9);
-        assert!((point.true_heading.unwrap().to_degrees() - 270.0).abs() < 1e-9);
-        let bare = second.point.clone().unwrap();
-        assert_eq!(bare.date, Some("2018-05-20T12:14:21Z".parse().unwrap()));
-        assert_eq!(
-            bare,
-            FlightPoint {
-                date: bare.date,
-                anti_ice: Some(false),
-                ..FlightPoint::new(bare.mass, bare.pressure_altitude, bare.mach)
-            }
-        );
-    }
-
-    #[test]
-    fn flight_levels_are_hundreds_of_feet() {
-        let in_feet =
-            FlightPoints::from_csv(b"mass_kg,pressure_altitude_ft,mach\n14000,41000,0.8").unwrap();
-        let in_levels =
-            FlightPoints::from_csv(b"mass_kg,flight_level,mach\n14000,410,0.8").unwrap();
-        assert_eq!(in_levels.rows()[0].point, in_feet.rows()[0].point);
-        let both = b"mass_kg,pressure_altitude_ft,flight_level,mach\n14000,41000,410,0.8";
-        assert!(FlightPoints::from_csv(both).is_err());
-    }
-
-    #[test]
-    fn the_shortest_file() {
-        let points =
-            FlightPoints::from_csv(b"mass_kg,pressure_altitude_ft,mach\n14000,41000,0.8").unwrap();
-        let expected = FlightPoint::new(
-            Mass::kilograms(14_000.0),
-            PressureAltitude::feet(41_000.0),
-            Mach::new(0.8),
-        );
-        assert_eq!(points.rows()[0].point, Ok(expected));
-    }
-
-    #[test]
-    fn a_row_that_lacks_a_needed_value_is_no_point_and_no_fault() {
-        let text = "mass_kg,pressure_altitude_ft,mach,isa_deviation_c\n\
-                    ,41000,0.8,0\n14000,-,0.8,0\n14000,41000, ,0\n14000,41000,0.8,\n14000,41000,0.8,0\n";
-        let points = FlightPoints::from_csv(text.as_bytes()).unwrap();
-        let named = |row: &FlightPointRow| {
-            row.point.as_ref().err().and_then(|error| error.column.as_ref()).map(|it| it.number)
-        };
-        let named: Vec<Option<usize>> = points.rows().iter().map(named).collect();
-        assert_eq!(named, [Some(1), Some(2), Some(3), Some(4), None]);
-        // A word is a fault, and so is the first one behind a value that is missing.
-        assert!(FlightPoints::from_csv(text.replace('-', "none").as_bytes()).is_err());
-    }
-
-    #[test]
-    fn faults_have_line_column_found_and_expected() {
-        let message = |row: &str| {
-            let text =
-                format!("mass_kg,pressure_altitude_ft,mach,isa_deviation_c,date,anti_ice\n{row}\n");
-            FlightPoints::from_csv(text.as_bytes()).unwrap_err().to_string()
-        };
-        for (row, expected) in [
-            (
-                "14000,41000,1.2,0,,",
-                "line 2, column 3 (mach): found \"1.2\", expected 0.1..=0.99 Mach (Mach number)",
-            ),
-            (
-                "14000,41000,0.8,216.65,,",
-                "line 2, column 4 (isa_deviation_c): found \"216.65\", expected -50..=50 °C (deviation from the ISA)",
-            ),
-            (
-                "14000,41000,0.8,0,20.5.2018,",
-                "line 2, column 5 (date): found \"20.5.2018\", expected a date as 2018-05-20 or 2018-05-20T14:14:21Z",
-            ),
-            (
-                "14000,41000,0.8,0,,0.5",
-                "line 2, column 6 (anti_ice): found \"0.5\", expected 0 or 1",
-            ),
-        ] {
-            assert_eq!(message(row), expected);
-        }
-    }
-}
+mod tests;

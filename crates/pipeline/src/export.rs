@@ -1,19 +1,22 @@
 //! A model's drag for other programs: OpenAP, JSBSim, and as JSON for any language.
 //!
-//! Drag alone is handed on: neither the effects that a model contains nor its remainder are in a table.
+//! Drag alone is handed on: neither the effects that a model contains nor its remainder are in a table. What is left out of a model
+//! that has learnt more than a table is stated with its size ([`remainder_left_out`]).
 
 mod jsbsim;
 mod json;
 mod openap;
+mod remainder;
 
 pub use jsbsim::jsbsim;
 pub use json::{SCHEMA, json};
 pub use openap::{OpenapError, OpenapPolar, openap};
+pub use remainder::{LeftOut, remainder_left_out};
 
 use crate::model_file::ModelFile;
 
 /// Which nodes guide or learnt flights inform.
-fn informed(model: &ModelFile) -> Vec<bool> {
+pub(crate) fn informed(model: &ModelFile) -> Vec<bool> {
     let by_flights = model.learnt.as_ref().map(|learnt| learnt.law.informed());
     let by_guide = model.initial.extrapolated().iter().map(|extrapolated| !extrapolated);
     by_guide

@@ -1,7 +1,7 @@
 //! A model's drag table, and the polynomial behind it, as tables of named columns.
 
 use adapt::bayes::{PolynomialError, polynomial_export};
-use lut::surface::{self, Basis, COEFFICIENTS, FitError};
+use lut::surface::{self, Basis, COEFFICIENTS, FitError, Surface};
 
 use crate::columns::Columns;
 use crate::model_file::ModelFile;
@@ -46,23 +46,10 @@ pub fn table(model: &ModelFile) -> Columns {
 /// # Errors
 /// A table whose nodes do not determine the polynomial.
 pub fn polynomial(model: &ModelFile) -> Result<Columns, ModelPolynomialError> {
-    let basis = model.initial.polynomial().basis;
-    let (surface, covariance) = if let Some(posterior) = model.posterior() {
-        let export = polynomial_export(posterior, basis)?;
-        (export.surface, Some(export.covariance))
-    } else {
-        let grid = model.grid();
-        let points: Vec<_> = (0..grid.nodes())
-            .map(|node| {
-                let (x, y) = grid.coordinates(node);
-                (x, y, model.drag_coefficient().value_at_node(node), 1.0)
-            })
-            .collect();
-        (surface::fit(basis, &points)?.surface, None)
-    };
+    let (surface, covariance) = surface_of(model)?;
     let mut columns = Columns::default();
     columns.count("coefficient", 0..surface.coefficients.len() as u64);
-    columns.text("term", terms(basis).map(str::to_owned).into_iter());
+    columns.text("term", terms(surface.basis).map(str::to_owned).into_iter());
     columns.number("value", surface.coefficients.iter().map(|value| Some(*value)));
     if let Some(covariance) = covariance {
         for other in 0..surface.coefficients.len() {
@@ -73,6 +60,57 @@ pub fn polynomial(model: &ModelFile) -> Result<Columns, ModelPolynomialError> {
         }
     }
     Ok(columns)
+}
+
+/// What the polynomial misses of the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PolynomialMiss {
+    /// Root mean square over the nodes that guide or flights inform, % of drag.
+    pub rms_percent: f64,
+    /// The largest of them, without its sign, % of drag.
+    pub maximum_percent: f64,
+}
+
+/// What the polynomial misses at the nodes of the table that guide or flights inform.
+///
+/// # Errors
+/// As for [`polynomial`].
+pub fn polynomial_miss(model: &ModelFile) -> Result<PolynomialMiss, ModelPolynomialError> {
+    let (surface, _) = surface_of(model)?;
+    let grid = model.grid();
+    let informed = crate::export::informed(model);
+    let misses: Vec<f64> = (0..grid.nodes())
+        .filter(|node| informed[*node])
+        .map(|node| {
+            let (lift_coefficient, mach) = grid.coordinates(node);
+            let drag = model.drag_coefficient().value_at_node(node);
+            100.0 * (surface.value(lift_coefficient, mach) / drag - 1.0)
+        })
+        .collect();
+    let squares: f64 = misses.iter().map(|miss| miss * miss).sum();
+    Ok(PolynomialMiss {
+        rms_percent: (squares / misses.len().max(1) as f64).sqrt(),
+        maximum_percent: misses.iter().fold(0.0, |worst, miss| f64::max(worst, miss.abs())),
+    })
+}
+
+/// The polynomial and, by law `bayes`, the covariance of its coefficients.
+type SurfaceKnown = (Surface, Option<[[f64; COEFFICIENTS]; COEFFICIENTS]>);
+
+fn surface_of(model: &ModelFile) -> Result<SurfaceKnown, ModelPolynomialError> {
+    let basis = model.initial.polynomial().basis;
+    if let Some(posterior) = model.posterior() {
+        let export = polynomial_export(posterior, basis)?;
+        return Ok((export.surface, Some(export.covariance)));
+    }
+    let grid = model.grid();
+    let points: Vec<_> = (0..grid.nodes())
+        .map(|node| {
+            let (x, y) = grid.coordinates(node);
+            (x, y, model.drag_coefficient().value_at_node(node), 1.0)
+        })
+        .collect();
+    Ok((surface::fit(basis, &points)?.surface, None))
 }
 
 /// What each coefficient of a drag polynomial multiplies, of Mach number M and lift coefficient CL.

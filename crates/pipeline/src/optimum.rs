@@ -15,11 +15,14 @@ mod fuel;
 mod speeds;
 mod text;
 
-pub use condition::{BestLevel, ConditionOptimum, LevelOptimum, NoSaving, SpeedOptimum, at};
+pub use condition::{
+    BestLevel, ConditionOptimum, LevelOptimum, NoSaving, SpeedOptimum, at,
+    largest_against_predict_percent,
+};
 pub use document::{OptimumDocument, SCHEMA, columns};
 pub use fuel::{Informed, OptimumModel};
-pub use speeds::{Edge, Kind};
-pub use text::table;
+pub use speeds::{Edge, Kind, OpenEnds};
+pub use text::{table, without_optimum};
 
 use units::{Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
 

@@ -19,7 +19,7 @@ mod points;
 
 pub use figures::PredictedColumn;
 pub use of_segments::{columns_of_segments, point_of_segment};
-pub use points::{PredictedPoints, measured_kg_s, missing_value};
+pub use points::{PredictedPoints, measured_kg_s, reason_of_row};
 
 /// Samples of the segment that a standard deviation is of, as many as the whole model's is of.
 const SAMPLES: u32 = 10;

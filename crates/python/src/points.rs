@@ -9,7 +9,9 @@ use arrow_array::types::Float64Type;
 use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, RecordBatchOptions};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use perf_model::{PointCell, PointTable};
-use pipeline::prediction::{PredictedPoints, Predictor, measured_kg_s, missing_value};
+use pipeline::prediction::{
+    PredictedColumn, PredictedPoints, Predictor, measured_kg_s, reason_of_row,
+};
 use rayon::prelude::*;
 
 use crate::failure::Failure;
@@ -134,8 +136,14 @@ impl At<'_> {
         let mut metadata = given.schema().metadata().clone();
         match returned {
             Returned::WithGiven => {
-                fields.extend(given.schema().fields().iter().cloned());
-                arrays.extend_from_slice(given.columns());
+                // Those of another prediction are found anew.
+                let kept = given.schema_ref().fields().iter().zip(given.columns());
+                let kept = kept
+                    .filter(|(field, _)| PredictedColumn::of_name(field.name().trim()).is_none());
+                for (field, array) in kept {
+                    fields.push(Arc::clone(field));
+                    arrays.push(Arc::clone(array));
+                }
             }
             // Such as how pandas finds the index among its columns.
             Returned::PredictionAlone => metadata.clear(),
@@ -180,7 +188,7 @@ impl At<'_> {
                     places.push(row);
                 }
                 (Err(error), Some(Ok(reader))) if is_missing(reader.value(row)) => {
-                    without.push((row, missing_value(&error)));
+                    without.push((row, reason_of_row(&error)));
                 }
                 (Err(error), _) => return Err(Failure::table(&error)),
             }

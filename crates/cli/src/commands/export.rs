@@ -22,6 +22,9 @@ pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
             model.told_effects()
         );
     }
+    if let Some(left_out) = export::remainder_left_out(&model) {
+        tracing::warn!("drag alone, as by `predict --table-only`: {}", left_out.words());
+    }
     let of_model =
         |error: &dyn std::fmt::Display| Failure::bad_file(&arguments.model, error.to_string());
     let output = arguments.output.as_deref();
@@ -40,6 +43,12 @@ pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
         ExportFormat::Polynomial => {
             let polynomial = model_table::polynomial(&model).map_err(|error| of_model(&error))?;
             columns::write(&polynomial, output)?;
+            let miss = model_table::polynomial_miss(&model).map_err(|error| of_model(&error))?;
+            tracing::warn!(
+                "the polynomial misses the informed nodes of the table by {:.2} % rms, {:.2} % at most",
+                miss.rms_percent,
+                miss.maximum_percent
+            );
             None
         }
         ExportFormat::Openap => {

@@ -12,7 +12,7 @@ use units::{Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
 use crate::args::OptimumArgs;
 use crate::columns;
 use crate::commands::Outcome;
-use crate::failure::{Failure, show};
+use crate::failure::{Failure, RefusedReport, show};
 use crate::files::is_device_or_pipe;
 use crate::files::outputs::write_result;
 use crate::models::read_model;
@@ -26,6 +26,9 @@ const LEVELS_FT: (f64, f64, &str) = (5_000.0, 65_000.0, "ft");
 const TAILWINDS_KT: (f64, f64, &str) = (-400.0, 400.0, "kt");
 /// Days, as flight points have them.
 const DAYS_K: (f64, f64, &str) = (-50.0, 50.0, "K");
+
+/// Fuel flow of the optima that is further from that of `predict`, %, is warned of: more than the other laws' models show. Our choice.
+const FAR_FROM_PREDICT_PERCENT: f64 = 0.5;
 
 /// Runs the command.
 ///
@@ -85,7 +88,21 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     for path in &arguments.output {
         let _ = writeln!(text, "Written to {}", show(path));
     }
-    Ok(Outcome::with_json(text, json))
+    warn_of_surface(&conditions);
+    let refused = optimum::without_optimum(&conditions).into_iter();
+    let refused = refused.map(|reason| RefusedReport::whole(arguments.model.clone(), reason));
+    Ok(Outcome { refused: refused.collect(), ..Outcome::with_json(text, json) })
+}
+
+/// A smooth surface overshoots between nodes that differ much, as law `paper` leaves them, and an optimum is drawn to where it does.
+fn warn_of_surface(conditions: &[ConditionOptimum]) {
+    let largest = optimum::largest_against_predict_percent(conditions);
+    if let Some(percent) = largest.filter(|percent| *percent > FAR_FROM_PREDICT_PERCENT) {
+        tracing::warn!(
+            "fuel flow at these optima is up to {percent:.2} % from what `predict` states: neighbouring nodes of the table \
+             differ so much that a smooth surface through them overshoots, and its optima may be no aircraft's"
+        );
+    }
 }
 
 fn write(path: &Path, json: &str, conditions: &[ConditionOptimum]) -> Result<(), Failure> {

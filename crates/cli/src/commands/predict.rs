@@ -20,7 +20,7 @@ use crate::{parquet_batches, parquet_numbers};
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
 use pipeline::prediction::{
-    PredictedColumn, Predictor, columns_of_segments, measured_kg_s, missing_value, point_of_segment,
+    PredictedColumn, Predictor, columns_of_segments, measured_kg_s, point_of_segment, reason_of_row,
 };
 use pipeline::reading::Checks;
 use pipeline::segments_table;
@@ -63,8 +63,19 @@ fn predict_rows(
     let bad = |error: CsvError| Failure::bad_file(&arguments.points, error);
     let (text, given) = points_text(arguments)?;
     let points = FlightPoints::from_csv(&text).map_err(bad)?;
+    let has_predicted = warn_of_predicted(points.header());
+    if has_predicted && matches!(given, Given::Parquet) && is_parquet_output(arguments) {
+        return Err(Failure::bad_file(
+            &arguments.points,
+            "columns of another prediction, which cannot be replaced in Parquet where a row lacks a value or a column holds more \
+             than numbers: leave them out",
+        ));
+    }
     let mut columns = Columns::default();
     for (column, name) in points.header().iter().enumerate() {
+        if is_predicted(name) {
+            continue;
+        }
         let fields = points.rows().iter().map(|row| row.fields[column].as_str());
         columns.text(name.as_str(), fields);
     }
@@ -75,7 +86,7 @@ fn predict_rows(
                 flights.push(*point);
                 places.push(place);
             }
-            Err(error) => without.push((place, missing_value(error))),
+            Err(error) => without.push((place, reason_of_row(error))),
         }
     }
     let table = PointTable::new(points.header().to_vec()).map_err(bad)?;
@@ -89,6 +100,25 @@ fn predict_rows(
     let lines = refused.into_iter().map(|(place, reason)| (points.rows()[place].line, reason));
     let outcome = outcome(arguments, predictor, points.rows().len(), lines);
     Ok(Outcome { json, ..outcome })
+}
+
+/// Whether a column is one of those that a prediction adds.
+fn is_predicted(name: &str) -> bool {
+    PredictedColumn::of_name(name.trim()).is_some()
+}
+
+/// Whether there are columns of another prediction, of which a warning says that they are not read.
+fn warn_of_predicted(names: &[String]) -> bool {
+    let found: Vec<&str> =
+        names.iter().map(|name| name.trim()).filter(|name| is_predicted(name)).collect();
+    if !found.is_empty() {
+        tracing::warn!("columns of a prediction are not read, and replaced: {}", found.join(", "));
+    }
+    !found.is_empty()
+}
+
+fn is_parquet_output(arguments: &PredictArgs) -> bool {
+    arguments.output.as_deref().is_some_and(columns::is_parquet_name)
 }
 
 /// Whether the error of the prediction is a column: that must not depend on the values in a table.
@@ -162,8 +192,8 @@ fn predict_numbers(
     else {
         return Ok(None);
     };
-    let names = input.iter().map(|(name, _)| name.clone()).collect();
-    let table = PointTable::new(names).map_err(|error| bad(&error))?;
+    let names: Vec<String> = input.iter().map(|(name, _)| name.clone()).collect();
+    let table = PointTable::new(names.clone()).map_err(|error| bad(&error))?;
     let Some(points) = table.level_columns(|column| Some(Cow::Borrowed(&input[column].1[..])))
     else {
         for row in 0..input[0].1.len() {
@@ -172,7 +202,7 @@ fn predict_numbers(
                 value => PointCell::Number(value),
             };
             match table.point(row as u64 + 2, cell) {
-                Err(error) if !error.is_missing_value() => return Err(bad(&error)),
+                Err(error) if !error.costs_its_row() => return Err(bad(&error)),
                 _ => {}
             }
         }
@@ -190,11 +220,13 @@ fn predict_numbers(
     let mut predicted = predictor.at_level_flights(flights, measured);
     let refused = std::mem::take(&mut predicted.refused);
     let mut columns = Columns::default();
-    for (name, values) in input {
+    for (name, values) in input.into_iter().filter(|(name, _)| !is_predicted(name)) {
         columns.dense(name, values);
     }
     predicted.append_to(&mut columns);
-    let json = deliver(arguments, &columns, Given::Parquet)?;
+    // What is replaced cannot go out as it came.
+    let given = if warn_of_predicted(&names) { Given::Text } else { Given::Parquet };
+    let json = deliver(arguments, &columns, given)?;
     // As in a text, line 1 has the names.
     let lines = refused.into_iter().map(|(place, reason)| (place as u64 + 2, reason));
     Ok(Some(Outcome { json, ..outcome(arguments, predictor, flights.count(), lines) }))
@@ -290,7 +322,7 @@ fn points_text(arguments: &PredictArgs) -> Result<(Vec<u8>, Given), Failure> {
     let file = kept(path)?;
     let text = parquet_batches::csv_of_file(&file, MAXIMUM_TEXT_BYTES);
     let text = text.map_err(|error| Failure::bad_file(path, error))?;
-    if !arguments.output.as_deref().is_some_and(columns::is_parquet_name) {
+    if !is_parquet_output(arguments) {
         for name in parquet_batches::unread_of_file(&file).unwrap_or_default() {
             tracing::warn!("column {name}: of a type that is not read, left empty");
         }

@@ -132,3 +132,31 @@ fn formats_have_their_options() {
     let same = run(&["--polynomial"]).expect(0).stdout;
     assert_eq!(same, run(&["--format", "polynomial"]).expect(0).stdout);
 }
+
+/// A model that has learnt more than its table says so on standard error and in the file; one that has not, does not.
+#[test]
+fn what_is_left_out_is_said() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[fixture("reports")], &[]).expect(0);
+    let learnt = output.join("models/SIM-01.ron");
+    let run = |model: &Path, format: &str| {
+        let words = ["export".as_ref(), model.as_os_str(), "--format".as_ref(), format.as_ref()];
+        cruisefit(&words).expect(0)
+    };
+    for format in ["csv", "polynomial", "openap", "jsbsim", "json"] {
+        run(&learnt, format).says("what else the model has learnt is left out");
+        let initial = run(&model, format);
+        assert!(!initial.stderr.contains("left out"), "{format}: {}", initial.stderr);
+    }
+    run(&learnt, "polynomial").says("the polynomial misses the informed nodes");
+    assert!(run(&learnt, "openap").stdout.contains("# Drag alone"), "a comment");
+    assert!(run(&learnt, "jsbsim").stdout.contains("<!-- Drag alone"), "a comment");
+    let document: serde_json::Value = serde_json::from_str(&run(&learnt, "json").stdout).unwrap();
+    assert!(document["remainder_left_out"]["rms_percent"].as_f64().unwrap() > 0.0);
+    let schema = crate::support::root().join("docs/schemas/model-1.json");
+    let schema: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(schema).unwrap()).unwrap();
+    assert_eq!(violations(&schema, &document), Vec::<String>::new());
+}

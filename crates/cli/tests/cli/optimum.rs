@@ -51,8 +51,89 @@ fn optima_as_table_csv_and_json() {
             assert_eq!(table["saving_kg_h"][row], "");
         }
     }
+    best_rows_are_those_of_the_document(&table, &document);
+    rows_are_held_against_predict(scratch.path(), &learnt, &table);
+    assert!(ran.stdout.contains("from what `predict` states"), "{}", ran.stdout);
+    let beyond = table["beyond_flights"].iter().any(|flag| flag == "1");
+    assert!(beyond, "FL430 is above what these flights flew");
+
+    // A mass that is informed nowhere is no silence, and costs nothing but itself.
+    let lost = scratch.path().join("lost.csv");
+    let asked = ["--mass-kg", "28000,400000", "-q", "-o", lost.to_str().unwrap()];
+    cruisefit(&arguments(&asked)).expect(1).says("mass 400000 kg, ISA deviation +0 °C");
+    assert!(csv_columns(&lost)["mass_kg"].iter().all(|mass| mass == "28000"));
     cruisefit(&arguments(&["-o", "x.txt"])).expect(2).says("ends neither in .csv");
     cruisefit(&arguments(&["--mass-kg", "-1"])).expect(2);
+}
+
+type Table = std::collections::BTreeMap<String, Vec<String>>;
+
+/// What the document has of best levels is in their rows, and in no other.
+fn best_rows_are_those_of_the_document(table: &Table, document: &serde_json::Value) {
+    let conditions = document["conditions"].as_array().unwrap();
+    let best: Vec<&serde_json::Value> =
+        conditions.iter().flat_map(|one| one["best"].as_array().unwrap()).collect();
+    let rows: Vec<usize> =
+        (0..table["mach"].len()).filter(|row| table["best_level"][*row] == "1").collect();
+    assert_eq!(rows.len(), best.len());
+    let is = |name: &str, row: usize, value: &serde_json::Value| {
+        // The parser of the document may miss the last bit.
+        let near = match (table[name][row].parse::<f64>().ok(), value.as_f64()) {
+            (Some(found), Some(value)) => (found - value).abs() <= 1e-12 * value.abs(),
+            (found, value) => found == value,
+        };
+        assert!(near, "{name} of row {row}: {value}");
+    };
+    for row in (0..).take(table["mach"].len()) {
+        let Some(best) = best.iter().find(|best| {
+            table["best_level"][row] == "1"
+                && best["kind"] == table["kind"][row]
+                && best["mach"] == table["mach"][row].parse::<f64>().unwrap()
+                && best["pressure_altitude_ft"]
+                    == table["pressure_altitude_ft"][row].parse::<f64>().unwrap()
+        }) else {
+            assert_eq!(table["best_level"][row], "0");
+            assert_eq!(table["level_ci95_low_ft"][row], "");
+            continue;
+        };
+        is("level_ci95_low_ft", row, &best["pressure_altitude_ci95"][0]);
+        is("level_ci95_high_ft", row, &best["pressure_altitude_ci95"][1]);
+        is("book_level_ft", row, &best["book_pressure_altitude_ft"]);
+        is("book_level_mach", row, &best["book_mach"]);
+        is("level_saving_kg_h", row, &best["saving_kg_h"]);
+        assert_eq!(table["level_no_saving"][row], best["no_saving"].as_str().unwrap_or(""));
+        assert!(best["at_edge"] == false || !table["at_edge"][row].is_empty(), "row {row}");
+        assert_eq!(best["beyond_flights"] == true, table["beyond_flights"][row] == "1");
+    }
+}
+
+/// The oracle is `predict` at the same points.
+fn rows_are_held_against_predict(folder: &std::path::Path, model: &std::path::Path, table: &Table) {
+    let mut points = "mass_kg,pressure_altitude_ft,mach,isa_deviation_c\n".to_owned();
+    for row in (0..).take(table["mach"].len()) {
+        let names = ["mass_kg", "pressure_altitude_ft", "mach", "isa_deviation_c"];
+        points.push_str(&names.map(|name| table[name][row].as_str()).join(","));
+        points.push('\n');
+    }
+    let (given, predicted) = (folder.join("points.csv"), folder.join("predicted.csv"));
+    std::fs::write(&given, points).unwrap();
+    cruisefit(&[
+        "predict".as_ref(),
+        "--model".as_ref(),
+        model.as_os_str(),
+        given.as_os_str(),
+        "-o".as_ref(),
+        predicted.as_os_str(),
+    ])
+    .expect(0);
+    let predicted = csv_columns(&predicted);
+    assert_eq!(predicted["beyond_flights"], table["beyond_flights"]);
+    for row in (0..).take(table["mach"].len()) {
+        let number = |table: &Table, name: &str| table[name][row].parse::<f64>().unwrap();
+        let flow = number(table, "fuel_flow_kg_h") / 3600.0;
+        let against = 100.0 * (flow / number(&predicted, "fuel_flow_kg_s") - 1.0);
+        assert!((against - number(table, "against_predict_percent")).abs() < 1e-6, "row {row}");
+    }
 }
 
 /// The virtual aircraft's own optima, found by brute force over its truth: thousandth by thousandth, each trimmed.

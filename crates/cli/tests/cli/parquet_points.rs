@@ -210,3 +210,29 @@ fn write_column<T: DataType>(
     column.typed::<T>().write_batch(&present, Some(levels), None).unwrap();
     column.close().unwrap();
 }
+
+/// A table of a prediction given again: its columns are replaced, in Parquet as numbers, and once more make the same bytes.
+#[test]
+fn a_prediction_given_again_is_replaced() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let row = |mach| [Some(68_000.0), Some(41_000.0), Some(mach), Some(1_500.0)];
+    let at = |name: &str| scratch.path().join(name);
+    write(&at("points.parquet"), &[row(0.8), row(0.82)]);
+    let predict = |from: &str, to: &str| {
+        let (from, to) = (at(from), at(to));
+        let words = ["predict".as_ref(), "--model".as_ref(), model.as_os_str(), from.as_os_str()];
+        cruisefit(&[&words[..], &["-o".as_ref(), to.as_os_str()]].concat()).expect(0)
+    };
+    for ending in ["csv", "parquet"] {
+        let (once, twice) = (format!("once.{ending}"), format!("twice.{ending}"));
+        let first = predict("points.parquet", &once);
+        assert!(!first.stderr.contains("replaced"), "{}", first.stderr);
+        predict(&once, &twice)
+            .says("columns of a prediction are not read, and replaced: fuel_flow_kg_s");
+        let csv = |name: &str| {
+            predict(name, "read.csv").stdout + &std::fs::read_to_string(at("read.csv")).unwrap()
+        };
+        assert_eq!(csv(&once), csv(&twice));
+    }
+}

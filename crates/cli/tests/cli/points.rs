@@ -250,3 +250,34 @@ fn points_that_were_not_steady_are_left_out_and_no_command_but_convert_refuses_t
     .expect(2)
     .says("the mapping's rows are averaged points");
 }
+
+/// A value that is missing or a temperature that cannot be costs its row; of many refused rows twenty are printed.
+#[test]
+fn a_bad_row_of_points_costs_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let points = folder.path().join("points.csv");
+    let predict = |text: &str| {
+        std::fs::write(&points, text).unwrap();
+        cruisefit(&["predict".as_ref(), "--model".as_ref(), model.as_os_str(), points.as_os_str()])
+    };
+    let names = "mass_kg,pressure_altitude_ft,mach,isa_deviation_c,anti_ice\n";
+    let good = "30000,41000,0.8,0,0.0\n";
+    let text = format!(
+        "{names}{good}30000,41000,NaN,0,0\n30000,41000,0.8,55,1.0\n30000,41000,0.8,NaN,False\n{good}"
+    );
+    let ran = predict(&text).expect(1);
+    ran.says("points.csv:3: mach: no value")
+        .says("points.csv:4: isa_deviation_c: found \"55\", expected -50..=50 °C")
+        .says("points.csv:5: isa_deviation_c: no value");
+    let flows: Vec<bool> =
+        column(&ran.stdout, "fuel_flow_kg_s").iter().map(|flow| !flow.is_empty()).collect();
+    assert_eq!(flows, [true, false, false, false, true]);
+
+    let outside = "30000,41000,0.2,0,0\n".repeat(100);
+    let ran = predict(&format!("{names}{outside}{good}")).expect(1);
+    assert_eq!(ran.stderr.lines().filter(|line| line.contains("points.csv:")).count(), 21);
+    ran.says("points.csv: 80 more");
+    // A column in another unit is that of a file.
+    predict(&format!("{names}30000,41000,80,0,0\n{good}")).expect(2).says("(mach): found \"80\"");
+}

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use flight::Timestamp;
 use units::{Angle, Mach, PressureAltitude, TemperatureDifference};
 
-use super::{COLUMNS, Columns, FlightPoint};
+use super::{Columns, FlightPoint, KNOWN, on_or_off};
 use crate::LevelFlights;
 use crate::columns::{CG_PERCENT_MAC, ISA_DEVIATION_C, LATITUDE_DEG, MACH, TRUE_HEADING_DEG};
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, within};
@@ -64,10 +64,10 @@ impl PointTable {
     /// The columns of a table with these names.
     ///
     /// # Errors
-    /// [`CsvError`] for a name that flight points do not have (other than one beginning with `X-`), that appears twice or is
-    /// missing.
+    /// [`CsvError`] for a name that flight points do not have (other than one beginning with `X-` and
+    /// [`PREDICTED_COLUMNS`](super::PREDICTED_COLUMNS)), that appears twice or is missing.
     pub fn new(names: Vec<String>) -> Result<Self, CsvError> {
-        let header = CsvText::of_header(names, &COLUMNS)?;
+        let header = CsvText::of_header(names, KNOWN)?;
         let columns = Columns::find_in(&header)?;
         Ok(Self { header, columns })
     }
@@ -216,11 +216,11 @@ impl<'a, F: Fn(usize) -> PointCell<'a>> TableRow<'_, F> {
         let Some(index) = index.filter(|index| is_available((self.cell)(*index))) else {
             return Ok(None);
         };
-        match words((self.cell)(index)).trim() {
-            "0" => Ok(Some(false)),
-            "1" => Ok(Some(true)),
-            found => Err(self.error(index, CsvErrorReason::NotZeroOrOne { found: found.into() })),
-        }
+        let found = words((self.cell)(index));
+        let found = found.trim();
+        on_or_off(found)
+            .map(Some)
+            .ok_or_else(|| self.error(index, CsvErrorReason::NotZeroOrOne { found: found.into() }))
     }
 
     fn error(&self, index: usize, reason: CsvErrorReason) -> CsvError {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::origin;
+use super::{origin, remainder_left_out};
 use crate::model_file::ModelFile;
 
 /// An `<aerodynamics>` file with the drag axis.
@@ -29,6 +29,9 @@ pub fn jsbsim(model: &ModelFile) -> String {
         mach.first(),
         mach.last()
     );
+    if let Some(left_out) = remainder_left_out(model) {
+        let _ = writeln!(text, "<!-- Drag alone: {}. -->", comment(&left_out.words()));
+    }
     let area_m2 = model.initial.aircraft().wing_area().to_square_meters();
     let _ = writeln!(
         text,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::informed;
+use super::{LeftOut, informed, remainder_left_out};
 use crate::model_file::ModelFile;
 
 /// Schema of the JSON.
@@ -34,6 +34,8 @@ struct Document<'a> {
     relative_std: Option<Vec<&'a [f64]>>,
     informed: Vec<Vec<bool>>,
     effects_left_out: Vec<String>,
+    /// `null` of a model that has learnt no more than a table.
+    remainder_left_out: Option<LeftOut>,
     equations: [&'static str; 6],
 }
 
@@ -90,6 +92,7 @@ pub fn json(model: &ModelFile) -> Result<String, serde_json::Error> {
         } else {
             vec![model.told_effects()]
         },
+        remainder_left_out: remainder_left_out(model),
         equations: EQUATIONS,
     };
     let mut text = serde_json::to_string_pretty(&document)?;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use lut::SmoothCell;
 
-use super::{informed, origin};
+use super::{LeftOut, informed, origin, remainder_left_out};
 use crate::model_file::ModelFile;
 
 /// Lift coefficients at which the table is read for the fit: enough that their number does not matter.
@@ -21,11 +21,12 @@ pub struct OpenapPolar {
     pub cd0: f64,
     /// Factor of CL².
     pub k: f64,
-    /// Root mean square of what the polar misses, % of drag.
+    /// Root mean square of what the polar misses of the smooth surface through the table's nodes, % of drag.
     pub rms_percent: f64,
     /// Largest miss, % of drag.
     pub maximum_percent: f64,
     origin: String,
+    left_out: Option<LeftOut>,
 }
 
 /// Why there is no polar.
@@ -99,6 +100,7 @@ pub fn openap(model: &ModelFile, mach: Option<f64>) -> Result<OpenapPolar, Opena
         rms_percent: mean_square.sqrt(),
         maximum_percent: misses.iter().fold(0.0, |worst, miss| f64::max(worst, miss.abs())),
         origin: origin(model),
+        left_out: remainder_left_out(model),
     })
 }
 
@@ -111,13 +113,16 @@ impl OpenapPolar {
         let _ = writeln!(text, "# cruisefit: {}", self.origin.replace(['\n', '\r'], " "));
         let _ = writeln!(
             text,
-            "# Fitted at Mach number {:.4} over lift coefficients {first} to {last}; it misses the table by {:.2} % rms, {:.2} % at most.",
+            "# Fitted at Mach number {:.4} over lift coefficients {first} to {last}; it misses the smooth surface through the table's nodes by {:.2} % rms, {:.2} % at most.",
             self.mach, self.rms_percent, self.maximum_percent
         );
         let _ = writeln!(
             text,
             "# Cruise only: nothing is known of gears and flaps. The wing area is that of the aircraft file."
         );
+        if let Some(left_out) = self.left_out {
+            let _ = writeln!(text, "# Drag alone: {}.", left_out.words());
+        }
         let name = serde_json::to_string(&self.origin).unwrap_or_default();
         let _ = writeln!(text, "aircraft: {name}\n\nclean:\n  cd0: {}\n  k: {}", self.cd0, self.k);
         text

@@ -53,3 +53,57 @@ fn a_name_cannot_end_a_comment_of_the_xml() {
     assert_eq!(text.matches("<!--").count(), text.matches("-->").count());
     assert!(text.contains("0.36"), "CL 0.6 squared is a row");
 }
+
+/// A model that has learnt more than a table: every format that has comments or fields states what its table leaves out. The oracle is
+/// what `predict` adds to the table at points inside its flights, which it cannot exceed by more than the points are fine.
+#[test]
+fn what_a_table_leaves_out_is_stated() {
+    assert_eq!(remainder_left_out(&model()), None);
+    let document: serde_json::Value = serde_json::from_str(&json(&model()).unwrap()).unwrap();
+    assert!(document["remainder_left_out"].is_null());
+    let whole = crate::prediction::tests::whole();
+    let left_out = remainder_left_out(&whole).unwrap();
+    let (rms, largest) = (left_out.rms_percent.unwrap(), left_out.largest_percent.unwrap());
+    assert!(rms > 0.01 && largest > rms, "{left_out:?}");
+
+    let baseline = whole.learnt.as_ref().unwrap().baseline.as_ref().unwrap();
+    let middle = |variable| {
+        let (low, high) = baseline.flown(variable).unwrap();
+        f64::midpoint(low, high)
+    };
+    let point = perf_model::FlightPoint {
+        isa_deviation: units::TemperatureDifference::kelvin(middle(
+            effects::Variable::IsaDeviation,
+        )),
+        ..perf_model::FlightPoint::new(
+            units::Mass::kilograms(middle(effects::Variable::Mass)),
+            units::PressureAltitude::meters(middle(effects::Variable::PressureAltitude)),
+            units::Mach::new(middle(effects::Variable::Mach)),
+        )
+    };
+    let predictor =
+        crate::prediction::Predictor::new(&whole, crate::whole_model::Predicts::WholeModel)
+            .unwrap();
+    let beside = predictor.at(&point).unwrap().beside_table.unwrap();
+    assert!(!beside.beyond_flights);
+    assert!(100.0 * beside.ln_fuel_flow.abs() < 1.1 * largest, "{beside:?} {left_out:?}");
+
+    let document: serde_json::Value = serde_json::from_str(&json(&whole).unwrap()).unwrap();
+    let stated = document["remainder_left_out"]["rms_percent"].as_f64().unwrap();
+    assert!((stated / rms - 1.0).abs() < 1e-12, "{stated} {rms}");
+    assert!(jsbsim(&whole).contains("left out"), "a comment");
+    assert!(openap(&whole, None).unwrap().to_yaml().contains("left out"), "a comment");
+    assert!(!openap(&model(), None).unwrap().to_yaml().contains("left out"));
+}
+
+/// A table that is the polynomial's own misses nothing; what law `paper` learnt node by node is no polynomial.
+#[test]
+fn the_miss_of_a_polynomial_is_that_of_its_nodes() {
+    let miss = crate::model_table::polynomial_miss(&model()).unwrap();
+    assert!(miss.maximum_percent < 1e-6, "{miss:?}");
+    let learnt =
+        ModelFile::from_text(include_str!("../../../../fixtures/global5000/expected/SIM-01.ron"))
+            .unwrap();
+    let miss = crate::model_table::polynomial_miss(&learnt).unwrap();
+    assert!(miss.rms_percent > 0.01 && miss.maximum_percent > miss.rms_percent, "{miss:?}");
+}

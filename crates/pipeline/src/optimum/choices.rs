@@ -2,7 +2,7 @@
 
 use super::condition::{BestLevel, NoSaving, SpeedOptimum};
 use super::fuel::Curve;
-use super::speeds::{Aim, Choice, Kind};
+use super::speeds::{Aim, Choice, Edge, Kind, OpenEnds};
 
 const SECONDS_PER_HOUR: f64 = 3600.0;
 
@@ -11,6 +11,14 @@ type ByLevel = Vec<Option<Choice>>;
 
 /// A level, and a point of its curve.
 type LevelAndPoint = (usize, usize);
+
+/// A drawn value, and whether the drawn model's own may be lower or higher: it was chosen at an edge.
+#[derive(Clone, Copy)]
+struct Drawn {
+    value: f64,
+    may_be_lower: bool,
+    may_be_higher: bool,
+}
 
 /// The choices for one aim.
 pub(super) struct Choices<'c> {
@@ -48,7 +56,12 @@ impl<'c> Choices<'c> {
         let (own, book) = (self.own[level]?, self.book[level]);
         let curve = &self.curves[level].1;
         let drawn = self.drawn.iter().filter_map(|choice| choice[level]);
-        let machs: Vec<f64> = drawn.map(|choice| self.mach((level, choice.at))).collect();
+        let machs = drawn.map(|choice| Drawn {
+            value: self.mach((level, choice.at)),
+            may_be_lower: choice.edge == Some(Edge::Lowest),
+            may_be_higher: choice.edge == Some(Edge::Highest),
+        });
+        let (mach_ci95, mach_ci95_open) = interval95_of_drawn(&machs.collect::<Vec<_>>());
         let no_saving = self.no_saving(own.edge.is_some(), book.map(|book| book.edge.is_some()));
         let saving = book
             .filter(|_| no_saving.is_none())
@@ -57,10 +70,13 @@ impl<'c> Choices<'c> {
         Some(SpeedOptimum {
             kind: self.aim.kind,
             mach: self.mach((level, own.at)),
-            mach_ci95: interval95(machs),
+            mach_ci95,
+            mach_ci95_open,
             edge: own.edge,
             informed_by: point.informed,
+            beyond_flights: None,
             fuel_flow_kg_h: curve.own_kg_s[own.at] * SECONDS_PER_HOUR,
+            against_predict_percent: None,
             ground_range_m_kg: self.aim.ground_speed_m_s(point) / curve.own_kg_s[own.at],
             book_mach: book.map(|book| self.mach((level, book.at))),
             book_edge: book.and_then(|book| book.edge),
@@ -74,13 +90,16 @@ impl<'c> Choices<'c> {
     pub(super) fn best(&self) -> Option<BestLevel> {
         let own = self.best_of(&self.own, |curve| &curve.own_kg_s)?;
         let book = self.best_of(&self.book, |curve| &curve.book_kg_s);
-        let levels: Vec<f64> = self
-            .drawn
-            .iter()
-            .enumerate()
-            .filter_map(|(draw, choice)| self.best_of(choice, |curve| &curve.drawn_kg_s[draw]))
-            .map(|(level, _)| self.curves[level].0)
-            .collect();
+        let drawn = self.drawn.iter().enumerate().filter_map(|(draw, choice)| {
+            let (level, _) = self.best_of(choice, |curve| &curve.drawn_kg_s[draw])?;
+            Some(Drawn {
+                value: self.curves[level].0,
+                may_be_lower: is_open_next(choice, level.checked_sub(1)),
+                may_be_higher: is_open_next(choice, level.checked_add(1)),
+            })
+        });
+        let (pressure_altitude_ci95, pressure_altitude_ci95_open) =
+            interval95_of_drawn(&drawn.collect::<Vec<_>>());
         let no_saving = self.no_saving(
             is_open(&self.own, own.0) || is_at_edge(&self.own, own.0),
             book.map(|book| is_open(&self.book, book.0) || is_at_edge(&self.book, book.0)),
@@ -89,7 +108,9 @@ impl<'c> Choices<'c> {
         Some(BestLevel {
             kind: self.aim.kind,
             pressure_altitude_ft: self.curves[own.0].0,
-            pressure_altitude_ci95: interval95(levels),
+            pressure_altitude_ci95,
+            pressure_altitude_ci95_open,
+            beyond_flights: None,
             at_edge: self.is_outermost(own.0) || is_open(&self.own, own.0),
             mach: self.mach(own),
             book_pressure_altitude_ft: book.map(|book| self.curves[book.0].0),
@@ -164,6 +185,12 @@ fn is_open(choices: &[Option<Choice>], level: usize) -> bool {
     open(level.checked_sub(1)) || open(level.checked_add(1))
 }
 
+/// The same of one neighbour, and where none was asked for.
+fn is_open_next(choices: &[Option<Choice>], next: Option<usize>) -> bool {
+    let next = next.and_then(|next| choices.get(next).copied().flatten());
+    next.is_none_or(|choice| choice.edge.is_some())
+}
+
 /// Whether the choice at a level lies at an edge.
 fn is_at_edge(choices: &[Option<Choice>], level: usize) -> bool {
     choices.get(level).copied().flatten().is_some_and(|choice| choice.edge.is_some())
@@ -174,6 +201,17 @@ fn interval95(mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;
     Some([values[last / 40], values[last - last / 40]])
+}
+
+/// The same of drawn values, and which of its ends are open: more draws than it leaves out there may lie beyond.
+fn interval95_of_drawn(drawn: &[Drawn]) -> (Option<[f64; 2]>, Option<OpenEnds>) {
+    let Some([low, high]) = interval95(drawn.iter().map(|one| one.value).collect()) else {
+        return (None, None);
+    };
+    let left_out = drawn.len().saturating_sub(1) / 40;
+    let below = drawn.iter().filter(|one| one.value < low || one.may_be_lower).count();
+    let above = drawn.iter().filter(|one| one.value > high || one.may_be_higher).count();
+    (Some([low, high]), OpenEnds::of(below > left_out, above > left_out))
 }
 
 #[cfg(test)]
@@ -248,6 +286,51 @@ mod tests {
         let curves = [(43_000.0, curve(&flown, 0.80, 0.82))];
         let speed = Choices::new(&curves, aim(Kind::MaximumRange)).speed(0).unwrap();
         assert_eq!((speed.book_mach, speed.no_saving), (None, Some(NoSaving::NoBook)));
+    }
+
+    /// By hand: of 200 draws at Mach 0.700 to 0.899 the 5th and the 195th end the interval. Five of them that were cut at an edge there
+    /// may lie anywhere beyond, so that the end is open; four may not change it.
+    #[test]
+    fn an_interval_is_open_where_draws_were_cut() {
+        let drawn = |cut: std::ops::Range<u32>| -> Vec<Drawn> {
+            (0..200)
+                .map(|k| Drawn {
+                    value: f64::from(700 + k.min(cut.start)) / 1000.0,
+                    may_be_lower: false,
+                    may_be_higher: cut.contains(&k),
+                })
+                .collect()
+        };
+        assert_eq!(interval95_of_drawn(&drawn(200..200)), (Some([0.704, 0.895]), None));
+        assert_eq!(interval95_of_drawn(&drawn(196..200)), (Some([0.704, 0.895]), None));
+        let open = (Some([0.704, 0.895]), Some(OpenEnds::Upper));
+        assert_eq!(interval95_of_drawn(&drawn(195..200)), open);
+        let lower: Vec<Drawn> = drawn(150..200)
+            .into_iter()
+            .map(|one| Drawn { may_be_lower: one.value < 0.71, ..one })
+            .collect();
+        assert_eq!(interval95_of_drawn(&lower), (Some([0.704, 0.85]), Some(OpenEnds::Both)));
+        assert_eq!(interval95_of_drawn(&[]), (None, None));
+    }
+
+    /// Drawn models that would fly faster than anything informed: the Mach number's own optimum lies inside, its interval's end does not.
+    #[test]
+    fn a_drawn_optimum_at_the_edge_opens_the_interval() {
+        let informed = [(700..=850, Informed::GuideAndFlights)];
+        let with_draws = |best: &[f64]| {
+            let mut one = curve(&informed, 0.82, 0.82);
+            one.drawn_kg_s =
+                best.iter().map(|best| curve(&informed, *best, 0.82).own_kg_s).collect();
+            [(41_000.0, one)]
+        };
+        let of = |best: &[f64]| {
+            let curves = with_draws(best);
+            Choices::new(&curves, aim(Kind::MaximumRange)).speed(0).unwrap()
+        };
+        let cut = of(&[0.80, 0.82, 0.87]);
+        assert_eq!((cut.edge, cut.mach_ci95), (None, Some([0.80, 0.85])));
+        assert_eq!(cut.mach_ci95_open, Some(OpenEnds::Upper));
+        assert_eq!(of(&[0.80, 0.82, 0.84]).mach_ci95_open, None);
     }
 
     /// A level is the best one where both next to it cost more at optima inside. One with its optimum at an edge leaves it open.

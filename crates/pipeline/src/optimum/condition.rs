@@ -4,8 +4,9 @@ use serde::Serialize;
 
 use super::choices::Choices;
 use super::fuel::{Curve, Informed, OptimumModel};
-use super::speeds::{Aim, Edge, Kind};
+use super::speeds::{Aim, Edge, Kind, OpenEnds};
 use super::{CostIndex, MassAndDay, Question};
+use crate::prediction::PointPrediction;
 
 /// The optima of one mass, ISA deviation and wind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,12 +41,19 @@ pub struct SpeedOptimum {
     pub mach: f64,
     /// Its 95 % interval, where the law knows one.
     pub mach_ci95: Option<[f64; 2]>,
+    /// Which of its ends are at an edge of the informed Mach numbers: drawn models were cut off there.
+    pub mach_ci95_open: Option<OpenEnds>,
     /// The edge of the informed Mach numbers at which it lies.
     pub edge: Option<Edge>,
     /// What informs the model there.
     pub informed_by: Informed,
+    /// Whether it lies beyond all that the learnt flights flew, as `predict` states it; `None` of a model that has learnt no more than
+    /// a table.
+    pub beyond_flights: Option<bool>,
     /// Predicted fuel flow of all engines.
     pub fuel_flow_kg_h: f64,
+    /// 100 (fuel flow/that of `predict` − 1): what is smooth between the nodes against what is bilinear.
+    pub against_predict_percent: Option<f64>,
     /// Distance over ground for a mass of fuel in this wind, of long range too, whose Mach number is that of still air.
     pub ground_range_m_kg: f64,
     /// The book's Mach number, among those that the guide informs; `None` where it informs none.
@@ -97,6 +105,10 @@ pub struct BestLevel {
     pub pressure_altitude_ft: f64,
     /// Its 95 % interval.
     pub pressure_altitude_ci95: Option<[f64; 2]>,
+    /// Which of its ends are where no further level could be chosen: drawn models were cut off there.
+    pub pressure_altitude_ci95_open: Option<OpenEnds>,
+    /// Whether it lies beyond all that the learnt flights flew, as for a Mach number.
+    pub beyond_flights: Option<bool>,
     /// Whether the aircraft's own level may be beyond: the next one, above or below, was not asked for, is not informed, or has its
     /// own optimum at an edge.
     pub at_edge: bool,
@@ -114,6 +126,41 @@ pub struct BestLevel {
     pub saving_ci95: Option<[f64; 2]>,
     /// Why no saving is stated. Levels that were not asked for are no reason: the saving is one among those that were.
     pub no_saving: Option<NoSaving>,
+}
+
+impl SpeedOptimum {
+    /// With what `predict` states of it.
+    fn held_against(self, found: Option<PointPrediction>) -> Self {
+        let Some(found) = found else { return self };
+        let predicted_kg_h = found.prediction.fuel_flow_total.to_kilograms_per_hour();
+        Self {
+            beyond_flights: found.beside_table.map(|beside| beside.beyond_flights),
+            against_predict_percent: Some(100.0 * (self.fuel_flow_kg_h / predicted_kg_h - 1.0)),
+            ..self
+        }
+    }
+}
+
+impl ConditionOptimum {
+    /// The optimum Mach number at a best level.
+    pub(super) fn speed_at(&self, best: &BestLevel) -> Option<&SpeedOptimum> {
+        speed_at(&self.levels, best)
+    }
+}
+
+fn speed_at<'l>(levels: &'l [LevelOptimum], best: &BestLevel) -> Option<&'l SpeedOptimum> {
+    let is_best = |level: &&LevelOptimum| {
+        level.pressure_altitude_ft.total_cmp(&best.pressure_altitude_ft).is_eq()
+    };
+    levels.iter().find(is_best)?.speeds.iter().find(|speed| speed.kind == best.kind)
+}
+
+/// The largest difference of the optima's fuel flow from that of `predict`, %, without its sign; `None` without any.
+#[must_use]
+pub fn largest_against_predict_percent(conditions: &[ConditionOptimum]) -> Option<f64> {
+    let levels = conditions.iter().flat_map(|condition| &condition.levels);
+    let speeds = levels.flat_map(|level| &level.speeds);
+    speeds.filter_map(|speed| speed.against_predict_percent).map(f64::abs).reduce(f64::max)
 }
 
 /// The optima of a mass and day, one for each wind.
@@ -139,19 +186,29 @@ pub fn at(
                 .iter()
                 .map(|kind| Choices::new(&curves, aim(*kind, *wind, cost_index)))
                 .collect();
+            let predicted = |at: usize, speed: SpeedOptimum| {
+                model.predicted(condition, question.levels[at], speed.mach)
+            };
             let level = |at: usize| LevelOptimum {
                 pressure_altitude_ft: curves[at].0,
-                speeds: choices.iter().filter_map(|choices| choices.speed(at)).collect(),
+                speeds: choices
+                    .iter()
+                    .filter_map(|choices| choices.speed(at))
+                    .map(|speed| speed.held_against(predicted(at, speed)))
+                    .collect(),
             };
+            let levels: Vec<LevelOptimum> =
+                (0..curves.len()).map(level).filter(|level| !level.speeds.is_empty()).collect();
+            let best = choices.iter().filter_map(Choices::best).map(|best| BestLevel {
+                beyond_flights: speed_at(&levels, &best).and_then(|speed| speed.beyond_flights),
+                ..best
+            });
             ConditionOptimum {
                 mass_kg: condition.mass.to_kilograms(),
                 isa_deviation_k: condition.isa_deviation.to_kelvin(),
                 tailwind_kt: wind.to_knots(),
-                best: choices.iter().filter_map(Choices::best).collect(),
-                levels: (0..curves.len())
-                    .map(level)
-                    .filter(|level| !level.speeds.is_empty())
-                    .collect(),
+                best: best.collect(),
+                levels,
             }
         })
         .collect()

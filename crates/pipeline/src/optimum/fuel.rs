@@ -13,6 +13,7 @@ use units::{Mach, PressureAltitude};
 
 use super::MassAndDay;
 use crate::model_file::ModelFile;
+use crate::prediction::{PointPrediction, Predictor};
 use crate::whole_model::Predicts;
 
 /// What informs a model at a point.
@@ -34,6 +35,7 @@ pub struct OptimumModel<'a> {
     book: Table,
     learnt: Learnt<'a>,
     informed_by_flights: Vec<bool>,
+    predictor: Predictor<'a>,
 }
 
 /// What a model has learnt, and models drawn from how well it knows it.
@@ -103,6 +105,7 @@ impl<'a> OptimumModel<'a> {
                 .learnt
                 .as_ref()
                 .map_or_else(|| vec![false; nodes], |learnt| learnt.law.informed()),
+            predictor: Predictor::new(model, Predicts::WholeModel)?.without_deviations(),
         })
     }
 
@@ -118,12 +121,20 @@ impl<'a> OptimumModel<'a> {
         let axis = self.book.grid().y();
         let mut curve = Curve { drawn_kg_s: vec![Vec::new(); self.draws()], ..Curve::default() };
         for mach_thousandths in thousandths(axis.first(), axis.last()) {
-            let mach = Mach::new(f64::from(mach_thousandths) / 1000.0);
-            let mut point = FlightPoint::new(condition.mass, level, mach);
-            point.isa_deviation = condition.isa_deviation;
-            self.add(&mut curve, mach_thousandths, &point);
+            let mach = f64::from(mach_thousandths) / 1000.0;
+            self.add(&mut curve, mach_thousandths, &point_at(condition, level, mach));
         }
         curve
+    }
+
+    /// What `predict` states of a point.
+    pub(super) fn predicted(
+        &self,
+        condition: MassAndDay,
+        level: PressureAltitude,
+        mach: f64,
+    ) -> Option<PointPrediction> {
+        self.predictor.at(&point_at(condition, level, mach)).ok()
     }
 
     /// Adds a point to a curve, unless the model is not informed there.
@@ -207,6 +218,13 @@ impl<'a> OptimumModel<'a> {
             (false, true) => Some(Informed::Flights),
             (false, false) => None,
         }
+    }
+}
+
+fn point_at(condition: MassAndDay, level: PressureAltitude, mach: f64) -> FlightPoint {
+    FlightPoint {
+        isa_deviation: condition.isa_deviation,
+        ..FlightPoint::new(condition.mass, level, Mach::new(mach))
     }
 }
 

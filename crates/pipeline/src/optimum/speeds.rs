@@ -39,6 +39,46 @@ pub enum Edge {
     Highest,
 }
 
+/// Which ends of an interval are where drawn models were cut off, at an edge of what is informed or was asked for: the interval
+/// may reach beyond them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OpenEnds {
+    /// The lower end.
+    Lower,
+    /// The upper end.
+    Upper,
+    /// Both.
+    Both,
+}
+
+impl OpenEnds {
+    /// The name in files.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Lower => "lower",
+            Self::Upper => "upper",
+            Self::Both => "both",
+        }
+    }
+
+    /// Of the lower and of the upper end.
+    pub(super) const fn of(lower: bool, upper: bool) -> Option<Self> {
+        match (lower, upper) {
+            (true, true) => Some(Self::Both),
+            (true, false) => Some(Self::Lower),
+            (false, true) => Some(Self::Upper),
+            (false, false) => None,
+        }
+    }
+
+    /// Whether the lower and whether the upper end is one of them.
+    pub(super) const fn sides(self) -> (bool, bool) {
+        (!matches!(self, Self::Upper), !matches!(self, Self::Lower))
+    }
+}
+
 /// What a choice minimises: fuel, and perhaps time as fuel, over distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {

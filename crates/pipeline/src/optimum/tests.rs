@@ -217,7 +217,7 @@ fn usual_masses_and_levels_are_those_of_the_guide() {
     assert_eq!(kilograms(&file).len(), 5);
     assert_eq!(thousands(&file), (25..=43).map(f64::from).collect::<Vec<_>>());
     let text = table(&found(&file, 17_000.0, &question(&[0.0], None)), Some(35_000.0));
-    assert!(text.contains("Thrust, buffet and ceiling are not known"), "{text}");
+    assert!(text.contains("Thrust, buffet, ceiling, MMO and VMO are not known"), "{text}");
     assert!(text.contains("have a point above FL 350"), "{text}");
 }
 

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::condition::{BestLevel, ConditionOptimum, NoSaving};
-use super::speeds::Kind;
+use super::largest_against_predict_percent;
+use super::speeds::{Kind, OpenEnds};
 use crate::summary::aligned;
 
 /// The best level of each condition and way to choose the Mach number, one line each. `highest_ft` is the highest pressure altitude
@@ -51,6 +52,24 @@ fn notes(conditions: &[ConditionOptimum], highest_ft: Option<f64>) -> String {
              optimum, or the book's, may be beyond it.\n",
         );
     }
+    if all().any(|(condition, best)| open_ends(condition, best).iter().any(Option::is_some)) {
+        text.push_str(
+            "* at an end of an interval: models drawn from what is known have their optimum at that edge; the interval may reach \
+             beyond it.\n",
+        );
+    }
+    if all().any(|(_, best)| best.beyond_flights == Some(true)) {
+        text.push_str(
+            "~ Beyond what the learnt flights flew: what they showed is continued there, and is less sure (`beyond_flights`).\n",
+        );
+    }
+    if let Some(percent) = largest_against_predict_percent(conditions) {
+        let _ = writeln!(
+            text,
+            "Fuel flow is smooth between the nodes of the table: at these optima, all levels, at most {percent:.2} % from what \
+             `predict` states."
+        );
+    }
     let reasons: BTreeSet<NoSaving> = all().filter_map(|(_, best)| best.no_saving).collect();
     for reason in reasons {
         text.push_str(match reason {
@@ -66,18 +85,47 @@ fn notes(conditions: &[ConditionOptimum], highest_ft: Option<f64>) -> String {
         });
     }
     text.push_str(&limits(all().map(|(_, best)| best.pressure_altitude_ft), highest_ft));
-    let uninformed = conditions.iter().filter(|condition| condition.best.is_empty());
-    let mut uninformed: Vec<String> =
-        uninformed.map(|condition| format!("{:.0} kg", condition.mass_kg)).collect();
-    if !uninformed.is_empty() {
-        uninformed.dedup();
-        let _ = writeln!(
-            text,
-            "Neither guide nor flights inform any level at {}.",
-            uninformed.join(", ")
-        );
-    }
     text
+}
+
+/// What is asked for and has no optimum at any level, each with the reason.
+#[must_use]
+pub fn without_optimum(conditions: &[ConditionOptimum]) -> Vec<String> {
+    let without = conditions.iter().filter(|condition| condition.best.is_empty());
+    let words = without.map(|condition| {
+        let against = if condition.tailwind_kt < 0.0 {
+            ", or the wind is stronger than the aircraft is fast"
+        } else {
+            ""
+        };
+        format!(
+            "mass {:.0} kg, ISA deviation {:+.0} °C, tailwind {:+.0} kt: no optimum, neither guide nor flights inform the model at \
+             any of these levels{against}",
+            condition.mass_kg, condition.isa_deviation_k, condition.tailwind_kt
+        )
+    });
+    words.collect()
+}
+
+/// Which ends of the level's and of the Mach number's interval are open.
+fn open_ends(condition: &ConditionOptimum, best: &BestLevel) -> [Option<OpenEnds>; 2] {
+    let of_mach = condition.speed_at(best).and_then(|speed| speed.mach_ci95_open);
+    let level = best.pressure_altitude_ci95_open.filter(|_| is_wide(best));
+    [level, of_mach]
+}
+
+/// Whether the level's interval is more than the level itself.
+fn is_wide(best: &BestLevel) -> bool {
+    best.pressure_altitude_ci95.is_some_and(|[low, high]| low < high)
+}
+
+/// An interval in parentheses, its open ends marked.
+fn interval(ends: Option<[f64; 2]>, open: Option<OpenEnds>, of: impl Fn(f64) -> String) -> String {
+    let (lower, upper) = open.map_or((false, false), OpenEnds::sides);
+    let mark = |is_open: bool| if is_open { "*" } else { "" };
+    ends.map_or_else(String::new, |[low, high]| {
+        format!(" ({}{}–{}{})", of(low), mark(lower), of(high), mark(upper))
+    })
 }
 
 /// That a level is chosen without the limits of the aircraft, and whether it is higher than anything that the model knows of.
@@ -88,20 +136,19 @@ fn limits(levels_ft: impl Iterator<Item = f64>, highest_ft: Option<f64>) -> Stri
         format!(" Neither guide nor flights have a point above FL {:.0}.", highest_ft / 100.0)
     });
     format!(
-        "Thrust, buffet and ceiling are not known to a model: hold the levels to those of the aircraft.{above}\n"
+        "Thrust, buffet, ceiling, MMO and VMO are not known to a model: hold levels and Mach numbers to those of the aircraft.{above}\n"
     )
 }
 
 fn row(condition: &ConditionOptimum, best: &BestLevel) -> Vec<String> {
     let mark = if is_marked(condition, best) { "*" } else { "" };
-    let speed = speed_of(condition, best);
+    let beyond = if best.beyond_flights == Some(true) { "~" } else { "" };
+    let [level_open, mach_open] = open_ends(condition, best);
+    let mach_ci95 = condition.speed_at(best).and_then(|speed| speed.mach_ci95);
     let kind = match best.kind {
         Kind::MaximumRange => "max range",
         Kind::LongRange => "long range",
         Kind::CostIndex => "cost index",
-    };
-    let interval = |interval: Option<[f64; 2]>, of: &dyn Fn(f64) -> String| {
-        interval.map_or_else(String::new, |[low, high]| format!(" ({}–{})", of(low), of(high)))
     };
     let level = |value: f64| format!("{:.0}", value / 100.0);
     let mach = |value: f64| format!("{value:.3}");
@@ -121,11 +168,12 @@ fn row(condition: &ConditionOptimum, best: &BestLevel) -> Vec<String> {
             format!("{} {}{mark}", level(book_ft), mach(book_mach))
         },
     );
-    let level_interval = best.pressure_altitude_ci95.filter(|[low, high]| low < high);
+    let level_interval = best.pressure_altitude_ci95.filter(|_| is_wide(best));
+    let level_interval = interval(level_interval, level_open, level);
     vec![
         format!("{kind} {:.0}", condition.mass_kg),
-        format!("{}{}", level(best.pressure_altitude_ft), interval(level_interval, &level)),
-        format!("{}{}{mark}", mach(best.mach), interval(speed.and_then(|s| s.mach_ci95), &mach)),
+        format!("{}{beyond}{level_interval}", level(best.pressure_altitude_ft)),
+        format!("{}{}{mark}", mach(best.mach), interval(mach_ci95, mach_open, mach)),
         book,
         saved,
     ]
@@ -136,17 +184,5 @@ fn day(condition: &ConditionOptimum) -> String {
 }
 
 fn is_marked(condition: &ConditionOptimum, best: &BestLevel) -> bool {
-    best.at_edge || speed_of(condition, best).is_some_and(|speed| speed.edge.is_some())
-}
-
-/// The optimum Mach number at the best level.
-fn speed_of<'c>(
-    condition: &'c ConditionOptimum,
-    best: &BestLevel,
-) -> Option<&'c super::condition::SpeedOptimum> {
-    let level = condition
-        .levels
-        .iter()
-        .find(|level| level.pressure_altitude_ft.total_cmp(&best.pressure_altitude_ft).is_eq())?;
-    level.speeds.iter().find(|speed| speed.kind == best.kind)
+    best.at_edge || condition.speed_at(best).is_some_and(|speed| speed.edge.is_some())
 }

@@ -1,7 +1,7 @@
 //! The columns of predictions at many points, and which of them are asked for.
 
-use perf_model::LevelBlock;
 use perf_model::fuel_flow::fuel_flow_error_percent;
+use perf_model::{LevelBlock, PREDICTED_COLUMNS};
 use units::FuelFlowTotal;
 
 use super::PointPrediction;
@@ -32,7 +32,7 @@ pub enum PredictedColumn {
 
 impl PredictedColumn {
     /// All, in the order in which they are given.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; PREDICTED_COLUMNS.len()] = [
         Self::FuelFlow,
         Self::FuelFlowDeviation,
         Self::SpecificRange,
@@ -47,17 +47,7 @@ impl PredictedColumn {
     /// Its name, with its unit.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::FuelFlow => "fuel_flow_kg_s",
-            Self::FuelFlowDeviation => "fuel_flow_std_kg_s",
-            Self::SpecificRange => "specific_range_m_kg",
-            Self::LiftCoefficient => "lift_coefficient",
-            Self::DragCoefficient => "drag_coefficient",
-            Self::Extrapolated => "extrapolated",
-            Self::ErrorPercent => "error_percent",
-            Self::RemainderPercent => "remainder_percent",
-            Self::BeyondFlights => "beyond_flights",
-        }
+        PREDICTED_COLUMNS[self as usize]
     }
 
     /// The column of a name.

@@ -263,11 +263,15 @@ impl PredictedPoints {
     }
 }
 
-/// Why a row is no point that lacks a value which it needs.
+/// Why a row is no point: it lacks a value which it needs, or has one that costs it ([`CsvError::costs_its_row`]).
 #[must_use]
-pub fn missing_value(error: &CsvError) -> String {
+pub fn reason_of_row(error: &CsvError) -> String {
     let column = error.column.as_ref().map_or("a column", |column| column.name.as_str());
-    format!("{column}: no value")
+    if error.is_missing_value() {
+        format!("{column}: no value")
+    } else {
+        format!("{column}: {}", error.reason)
+    }
 }
 
 /// Measured fuel flow of all engines at each point, kg/s, NaN where none.

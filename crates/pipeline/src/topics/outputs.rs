@@ -38,7 +38,7 @@ pub(super) const OUTPUTS: [Output; 37] = [
     output(
         "beyond_flights",
         "0, 1",
-        "predict: 1 where Mach number, lift coefficient, pressure altitude, corrected thrust,\n\
+        "predict, optimum: 1 where Mach number, lift coefficient, pressure altitude, corrected thrust,\n\
          deviation from the ISA or mass lies beyond all that the model's flights flew.",
     ),
     output(
