@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use pipeline::model_file::ModelFile;
 use pipeline::optimum::{
     self, ConditionOptimum, CostIndex, DRAWS, MassAndDay, OptimumDocument, OptimumModel, Question,
 };
@@ -27,7 +28,7 @@ const TAILWINDS_KT: (f64, f64, &str) = (-400.0, 400.0, "kt");
 /// Days, as flight points have them.
 const DAYS_K: (f64, f64, &str) = (-50.0, 50.0, "K");
 
-/// Fuel flow of the optima that is further from that of `predict`, %, is warned of: more than the other laws' models show. Our choice.
+/// Fuel flow of the optima that is further from that of `predict`, %, is warned of. Our choice.
 const FAR_FROM_PREDICT_PERCENT: f64 = 0.5;
 
 /// Runs the command.
@@ -88,21 +89,29 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     for path in &arguments.output {
         let _ = writeln!(text, "Written to {}", show(path));
     }
-    warn_of_surface(&conditions);
+    warn_of_surface(&file, &conditions);
     let refused = optimum::without_optimum(&conditions).into_iter();
     let refused = refused.map(|reason| RefusedReport::whole(arguments.model.clone(), reason));
     Ok(Outcome { refused: refused.collect(), ..Outcome::with_json(text, json) })
 }
 
-/// A smooth surface overshoots between nodes that differ much, as law `paper` leaves them, and an optimum is drawn to where it does.
-fn warn_of_surface(conditions: &[ConditionOptimum]) {
+/// Between nodes that bend evenly a smooth surface is nearer to the truth than chords; between such as law `paper` leaves it
+/// overshoots, and an optimum is drawn to where it does.
+fn warn_of_surface(file: &ModelFile, conditions: &[ConditionOptimum]) {
     let largest = optimum::largest_against_predict_percent(conditions);
-    if let Some(percent) = largest.filter(|percent| *percent > FAR_FROM_PREDICT_PERCENT) {
-        tracing::warn!(
-            "fuel flow at these optima is up to {percent:.2} % from what `predict` states: neighbouring nodes of the table \
-             differ so much that a smooth surface through them overshoots, and its optima may be no aircraft's"
-        );
-    }
+    let Some(percent) = largest.filter(|percent| *percent > FAR_FROM_PREDICT_PERCENT) else {
+        return;
+    };
+    let is_by_law_paper = file.learnt.is_some() && file.posterior().is_none();
+    let why = if is_by_law_paper {
+        "law paper leaves neighbouring nodes of the table so far apart that a smooth surface through them overshoots, and its \
+         optima may be no aircraft's"
+    } else {
+        "the nodes of the table are so far apart that the chords of `predict` leave the smooth surface"
+    };
+    tracing::warn!(
+        "fuel flow at these optima is up to {percent:.2} % from what `predict` states: {why}"
+    );
 }
 
 fn write(path: &Path, json: &str, conditions: &[ConditionOptimum]) -> Result<(), Failure> {

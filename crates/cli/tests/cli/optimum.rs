@@ -66,6 +66,29 @@ fn optima_as_table_csv_and_json() {
     cruisefit(&arguments(&["--mass-kg", "-1"])).expect(2);
 }
 
+/// Law `paper` leaves nodes so far apart that a smooth surface overshoots between them: noted, warned of, and in the document. It has
+/// no interval, and no flights beyond which something lies.
+#[test]
+fn a_surface_that_overshoots_is_warned_of() {
+    let model = fixture("expected/SIM-01.ron");
+    let ran = cruisefit(&["optimum".as_ref(), "--model".as_ref(), model.as_os_str()]).expect(0);
+    ran.says("overshoots").prints("from what `predict` states");
+    let words = ["optimum".as_ref(), "--json".as_ref(), "--model".as_ref(), model.as_os_str()];
+    let printed = cruisefit(&words).expect(0).stdout;
+    let document: serde_json::Value = serde_json::from_str(&printed).unwrap();
+    assert!(document["largest_against_predict_percent"].as_f64().unwrap() > 0.5);
+    assert!(document["conditions"][0]["best"][0]["beyond_flights"].is_null());
+    let schema = crate::support::root().join("docs/schemas/optimum-1.json");
+    let schema: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(schema).unwrap()).unwrap();
+    assert_eq!(violations(&schema, &document), Vec::<String>::new());
+    let scratch = tempfile::tempdir().unwrap();
+    let initial = initial_model(scratch.path());
+    let ran = cruisefit(&["optimum".as_ref(), "--model".as_ref(), initial.as_os_str()]).expect(0);
+    ran.says("the chords of `predict`");
+    assert!(!ran.stderr.contains("overshoots"), "{}", ran.stderr);
+}
+
 type Table = std::collections::BTreeMap<String, Vec<String>>;
 
 /// What the document has of best levels is in their rows, and in no other.
