@@ -135,6 +135,9 @@ fn residuals_state_how_far_the_whole_model_expects_to_err() {
         assert!(*of_flight > 0.0 && *of_flight <= widest + 1e-9, "{flight}: {of_flight} {widest}");
     }
     assert!(columns["beyond_flights"].iter().all(|flag| flag == "0" || flag == "1"));
+    let beyond = columns["beyond_flights"].iter().filter(|flag| *flag == "1").count();
+    assert!(beyond > 0);
+    assert_eq!(summary["tails"][0]["beyond_flights"], beyond);
     evaluate(&initial, &reports[8..], "-o", &table);
     assert!(csv_columns(&table)["error_half_width95_percent"].iter().all(String::is_empty));
 }
