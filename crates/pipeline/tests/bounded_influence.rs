@@ -29,15 +29,26 @@ struct Influence {
     shift: f64,
     /// Root mean square of the model's own standard deviations.
     stated: f64,
+    /// Standard deviation stated of a segment over the same of the other model, root mean squares.
+    wider: f64,
 }
 
 /// `spoil` states of every segment, by flight and place, by what factor its fuel flow is off.
 fn influence(seed: u64, spoil: impl Fn(usize, usize) -> Option<f64>) -> Influence {
+    influence_of(TEACHING, seed, spoil)
+}
+
+/// The same of so many flights that teach.
+fn influence_of(
+    teaching: usize,
+    seed: u64,
+    spoil: impl Fn(usize, usize) -> Option<f64>,
+) -> Influence {
     let setup = Setup { flights: 60, segments: 8, ..Setup::default() };
     let background = Background { field: 0.01, ..Background::default() };
     let fleet = fly(seed, &setup, &[], &background);
-    let (teaching, judging) = fleet.flights.split_at(TEACHING);
-    let judging = judging.concat();
+    let judging = fleet.flights[TEACHING..].concat();
+    let teaching = &fleet.flights[..teaching];
     let (mut spoilt, mut without) = (teaching.to_vec(), teaching.to_vec());
     for (flight, segments) in spoilt.iter_mut().enumerate() {
         for (place, segment) in segments.iter_mut().enumerate() {
@@ -54,7 +65,12 @@ fn influence(seed: u64, spoil: impl Fn(usize, usize) -> Option<f64>) -> Influenc
     let rms = |squares: f64| (squares / judging.len() as f64).sqrt();
     let off = pairs().map(|(a, b)| a.ln_fuel_flow - b.ln_fuel_flow);
     let shift = rms(off.map(|off| off * off).sum());
-    Influence { shift, stated: rms(without.iter().map(WholePrediction::of_model).sum()) }
+    let deviation = |of: &[WholePrediction]| rms(of.iter().map(WholePrediction::variance).sum());
+    Influence {
+        shift,
+        stated: rms(without.iter().map(WholePrediction::of_model).sum()),
+        wider: deviation(&spoilt) / deviation(&without),
+    }
 }
 
 fn burn_more(segment: &mut Segment, factor: f64) {
@@ -71,6 +87,19 @@ fn one_absurd_flight_of_forty() {
         for factor in [1.3, 5.0] {
             let found = influence(seed, |flight, _| (flight == 17).then_some(factor));
             assert!(found.shift < 0.5 * found.stated, "{factor}: {found:?}");
+        }
+    }
+}
+
+/// A flight that counts fully would be the scatter between ten or twenty, and every interval as wide as it is absurd: by 30 times
+/// and more at five times the fuel flow.
+#[test]
+fn one_absurd_flight_of_ten_leaves_intervals_alone() {
+    for seed in [811, 812] {
+        for (teaching, factor) in [(10, 1.3), (10, 5.0), (20, 0.7), (20, 5.0)] {
+            let found = influence_of(teaching, seed, |flight, _| (flight == 5).then_some(factor));
+            let ratio = found.wider;
+            assert!((0.5..1.5).contains(&ratio), "{teaching} flights, {factor}: {found:?}");
         }
     }
 }

@@ -82,3 +82,25 @@ fn what_does_not_vary_has_no_function_and_a_wide_range_few_knots() {
     let mut terms = vec![0.0; wide.len()];
     assert!(wide.write(33_333.0, &mut terms) < 0.05);
 }
+
+/// By the formula: 2/3 of the cube of the distance in lengths, of the prior's variance for Mach number, else of the scaled one.
+#[test]
+fn what_grows_beyond_the_flown_mach_numbers_is_the_prior() {
+    let scale = 0.1;
+    for (variable, length, expected) in [
+        (Variable::Mach, 0.02, 2.0 / 3.0 * 1.5_f64.powi(3)),
+        (Variable::LiftCoefficient, 0.1, 2.0 / 3.0 * 1.5_f64.powi(3) * scale * scale),
+    ] {
+        let mut smooth = Smooth::over(variable, length, &[0.70, 0.70 + length]).unwrap();
+        smooth.scale_by(scale);
+        let mut terms = vec![0.0; smooth.len()];
+        for beyond in [smooth.flown().0 - 1.5 * length, smooth.flown().1 + 1.5 * length] {
+            let left = scale * scale * smooth.write(beyond, &mut terms);
+            assert!((left / expected - 1.0).abs() < 1e-9, "{variable:?}: {left} {expected}");
+        }
+        // A scale above the prior's is what flights have shown.
+        smooth.scale_by(2.0);
+        let left = smooth.write(smooth.flown().1 + 1.5 * length, &mut terms);
+        assert!((left / (2.0 / 3.0 * 1.5_f64.powi(3)) - 1.0).abs() < 1e-9, "{left}");
+    }
+}
