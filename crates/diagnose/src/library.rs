@@ -184,12 +184,11 @@ fn lacking(
     {
         return Some(vec![NeededInput::FuelFlowPerEngine]);
     }
-    // An assumed temperature can be predicted with; nothing can be learnt of it.
-    let temperature = NeededInput::StaticAirTemperature;
-    let is_untold =
-        |point: &EffectPoint| id.entry().needs.contains(&temperature) && !point.has(temperature);
-    let missing =
-        points.iter().filter(|point| point.lacks(id).is_some() || is_untold(point)).count();
+    // Anti-ice bleed is tested by what stands for it. An assumed temperature can be predicted with, and nothing be learnt of it.
+    let tells =
+        |point: &EffectPoint, input: NeededInput| input == NeededInput::AntiIce || point.has(input);
+    let is_untold = |point: &&EffectPoint| !id.entry().needs.iter().all(|&it| tells(point, it));
+    let missing = points.iter().filter(is_untold).count();
     if (missing as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64 {
         return None;
     }

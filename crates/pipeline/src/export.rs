@@ -27,6 +27,13 @@ pub(crate) fn informed(model: &ModelFile) -> Vec<bool> {
         .collect()
 }
 
+/// Root mean square of what an export misses, and the largest of it without its sign; `None` of nothing.
+pub(crate) fn rms_and_largest(percents: &[f64]) -> Option<[f64; 2]> {
+    let largest = percents.iter().map(|percent| percent.abs()).reduce(f64::max)?;
+    let squares: f64 = percents.iter().map(|percent| percent * percent).sum();
+    Some([(squares / percents.len() as f64).sqrt(), largest])
+}
+
 /// The model's name, tail and number of learnt flights, for a comment.
 fn origin(model: &ModelFile) -> String {
     let aircraft = model.initial.aircraft();

@@ -4,6 +4,7 @@ use adapt::bayes::{PolynomialError, polynomial_export};
 use lut::surface::{self, Basis, COEFFICIENTS, FitError, Surface};
 
 use crate::columns::Columns;
+use crate::export::{informed, rms_and_largest};
 use crate::model_file::ModelFile;
 
 /// Why no polynomial follows from a table.
@@ -78,20 +79,17 @@ pub struct PolynomialMiss {
 pub fn polynomial_miss(model: &ModelFile) -> Result<PolynomialMiss, ModelPolynomialError> {
     let (surface, _) = surface_of(model)?;
     let grid = model.grid();
-    let informed = crate::export::informed(model);
+    let is_informed = informed(model);
     let misses: Vec<f64> = (0..grid.nodes())
-        .filter(|node| informed[*node])
+        .filter(|node| is_informed[*node])
         .map(|node| {
             let (lift_coefficient, mach) = grid.coordinates(node);
             let drag = model.drag_coefficient().value_at_node(node);
             100.0 * (surface.value(lift_coefficient, mach) / drag - 1.0)
         })
         .collect();
-    let squares: f64 = misses.iter().map(|miss| miss * miss).sum();
-    Ok(PolynomialMiss {
-        rms_percent: (squares / misses.len().max(1) as f64).sqrt(),
-        maximum_percent: misses.iter().fold(0.0, |worst, miss| f64::max(worst, miss.abs())),
-    })
+    let [rms_percent, maximum_percent] = rms_and_largest(&misses).unwrap_or_default();
+    Ok(PolynomialMiss { rms_percent, maximum_percent })
 }
 
 /// The polynomial and, by law `bayes`, the covariance of its coefficients.

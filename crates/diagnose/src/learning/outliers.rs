@@ -7,7 +7,7 @@
 use crate::learning::dials::Dials;
 use crate::learning::rows::ChannelRows;
 use crate::math::quantile::{MEDIAN_TO_DEVIATION, median};
-use crate::thresholds::{FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, USUAL_DISTANCE};
+use crate::thresholds::{ABSURD, FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, USUAL_DISTANCE};
 
 /// Largest change of a weight, as a share of it, at which they count as settled: that of an absurd flight is small, and the scatter
 /// between flights that it makes goes with its share. Our choice: 0.8 instead of 0.76 changes nothing.
@@ -89,19 +89,14 @@ fn scale_about(middle: f64, values: &[f64]) -> f64 {
     (MEDIAN_TO_DEVIATION * distance).max(LEAST_MEDIAN_DISTANCE)
 }
 
-/// 1 up to a usual distance, then falling with its square, and with its fourth power from twice the usual distance on.
+/// 1 up to a usual distance, then falling with its square, and with its fourth power from where it is absurd ([`ABSURD`]), twice
+/// the usual distance, on.
 ///
 /// A value that counts by the square of its distance adds 2.5² = 6.25 to the sum that noise is found from, however far it lies:
 /// as much as all of ten flights, of which a dozen columns take up most. An absurd one must add nothing.
 fn weight(distance: f64, usual: f64) -> f64 {
-    let share = usual / distance.abs();
-    if share >= 1.0 || share.is_nan() {
-        1.0
-    } else if share >= 0.5 {
-        share * share
-    } else {
-        4.0 * share.powi(4)
-    }
+    let square = (usual / distance).powi(2);
+    if square >= 1.0 || square.is_nan() { 1.0 } else { square * (square / ABSURD).min(1.0) }
 }
 
 #[cfg(test)]

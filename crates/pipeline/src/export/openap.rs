@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use lut::SmoothCell;
 
-use super::{LeftOut, informed, origin, remainder_left_out};
+use super::{LeftOut, informed, origin, remainder_left_out, rms_and_largest};
 use crate::model_file::ModelFile;
 
 /// Lift coefficients at which the table is read for the fit: enough that their number does not matter.
@@ -91,14 +91,14 @@ pub fn openap(model: &ModelFile, mach: Option<f64>) -> Result<OpenapPolar, Opena
     }
     let misses: Vec<f64> =
         points.iter().map(|(square, drag)| 100.0 * ((cd0 + k * square) / drag - 1.0)).collect();
-    let mean_square = misses.iter().map(|miss| miss * miss).sum::<f64>() / misses.len() as f64;
+    let [rms_percent, maximum_percent] = rms_and_largest(&misses).ok_or(missing)?;
     Ok(OpenapPolar {
         mach,
         lift_coefficients: (first, last),
         cd0,
         k,
-        rms_percent: mean_square.sqrt(),
-        maximum_percent: misses.iter().fold(0.0, |worst, miss| f64::max(worst, miss.abs())),
+        rms_percent,
+        maximum_percent,
         origin: origin(model),
         left_out: remainder_left_out(model),
     })

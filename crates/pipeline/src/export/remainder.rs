@@ -5,6 +5,7 @@ use effects::Variable;
 use perf_model::LevelFlights;
 use serde::Serialize;
 
+use super::rms_and_largest;
 use crate::model_file::ModelFile;
 use crate::prediction::{PredictedColumn, Predictor};
 use crate::whole_model::Predicts;
@@ -15,7 +16,7 @@ const VALUES: u32 = 9;
 /// What a table leaves out: the fuel flow that `predict` states over that of the table, less 1, in level flight over the masses,
 /// levels, Mach numbers and deviations from the ISA that the learnt flights flew, at points where nothing lies beyond them.
 /// `None` where no such point is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LeftOut {
     /// Root mean square, %.
     pub rms_percent: Option<f64>,
@@ -29,14 +30,9 @@ pub fn remainder_left_out(model: &ModelFile) -> Option<LeftOut> {
     model.whole(Predicts::WholeModel)?;
     let baseline = model.learnt.as_ref()?.baseline.as_ref()?;
     let percents = inside_flights(model, baseline).unwrap_or_default();
-    if percents.is_empty() {
-        return Some(LeftOut::default());
-    }
-    let squares: f64 = percents.iter().map(|percent| percent * percent).sum();
-    Some(LeftOut {
-        rms_percent: Some((squares / percents.len() as f64).sqrt()),
-        largest_percent: percents.iter().map(|percent| percent.abs()).reduce(f64::max),
-    })
+    let [rms_percent, largest_percent] =
+        rms_and_largest(&percents).map_or([None; 2], |found| found.map(Some));
+    Some(LeftOut { rms_percent, largest_percent })
 }
 
 impl LeftOut {

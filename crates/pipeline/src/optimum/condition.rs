@@ -141,6 +141,13 @@ impl SpeedOptimum {
     }
 }
 
+impl BestLevel {
+    /// Whether this is the best level.
+    pub(super) fn is(&self, level: &LevelOptimum) -> bool {
+        level.pressure_altitude_ft.total_cmp(&self.pressure_altitude_ft).is_eq()
+    }
+}
+
 impl ConditionOptimum {
     /// The optimum Mach number at a best level.
     pub(super) fn speed_at(&self, best: &BestLevel) -> Option<&SpeedOptimum> {
@@ -149,10 +156,7 @@ impl ConditionOptimum {
 }
 
 fn speed_at<'l>(levels: &'l [LevelOptimum], best: &BestLevel) -> Option<&'l SpeedOptimum> {
-    let is_best = |level: &&LevelOptimum| {
-        level.pressure_altitude_ft.total_cmp(&best.pressure_altitude_ft).is_eq()
-    };
-    levels.iter().find(is_best)?.speeds.iter().find(|speed| speed.kind == best.kind)
+    levels.iter().find(|level| best.is(level))?.speeds.iter().find(|speed| speed.kind == best.kind)
 }
 
 /// The largest difference of the optima's fuel flow from that of `predict`, %, without its sign; `None` without any.

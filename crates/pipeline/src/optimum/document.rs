@@ -88,10 +88,7 @@ fn rows(conditions: &[ConditionOptimum]) -> Vec<Row<'_>> {
     for condition in conditions {
         for level in &condition.levels {
             for speed in &level.speeds {
-                let is_best = |best: &&BestLevel| {
-                    best.kind == speed.kind
-                        && best.pressure_altitude_ft.total_cmp(&level.pressure_altitude_ft).is_eq()
-                };
+                let is_best = |best: &&BestLevel| best.kind == speed.kind && best.is(level);
                 let best = condition.best.iter().find(is_best);
                 rows.push(Row { condition, level, speed, best });
             }
