@@ -294,7 +294,8 @@ def evaluate(reports: DataFrame, models: Model | Sequence[Model] | DataFrame, **
 
 def monitor(adapted: DataFrame, **options: Any) -> DataFrame:
     """What changed on tails, when and by how much: one row per tail (``tail``, ``monitor``: JSON of ``monitor.json`` of this
-    tail, ``alerts``: how many rules fired, ``error``).
+    tail, ``alerts``: how many rules fired, ``error``). Each tail is looked at by itself: its level at the mean conditions of all
+    tails of its type takes the others, and is null.
 
     Args:
         adapted: The result of :func:`adapt`.
