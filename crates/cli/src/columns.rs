@@ -16,7 +16,7 @@ use pipeline::columns::{Cells, Columns};
 
 use crate::failure::Failure;
 use crate::files::is_device_or_pipe;
-use crate::files::outputs::write_result;
+use crate::files::outputs::{check_table, write_parquet, write_result};
 
 /// Values that are encoded together.
 const VALUES_AT_ONCE: usize = 1 << 16;
@@ -28,15 +28,19 @@ const VALUES_AT_ONCE: usize = 1 << 16;
 /// An ending that is neither `.csv` nor `.parquet`, a file that would be lost, or one that cannot be written.
 pub(crate) fn write(columns: &Columns, path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path.filter(|path| path.as_os_str() != "-") else {
-        return crate::terminal::print_data(&columns.to_csv())
-            .map_err(|error| Failure::unwritable(Path::new("standard output"), error));
+        return match crate::terminal::print_data(&columns.to_csv()) {
+            // Whoever reads has enough.
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+            Err(error) => Err(Failure::unwritable(Path::new("standard output"), error)),
+            Ok(()) => Ok(()),
+        };
     };
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => write_result(path, &columns.to_csv()),
         Some("parquet") => {
             let bytes =
                 to_parquet(columns, None).map_err(|error| Failure::unwritable(path, error))?;
-            write_result(path, &bytes)
+            write_parquet(path, &bytes, &names(columns))
         }
         _ if is_device_or_pipe(path) => write_result(path, &columns.to_csv()),
         _ => Err(Failure::BadArgument {
@@ -44,6 +48,14 @@ pub(crate) fn write(columns: &Columns, path: Option<&Path>) -> Result<(), Failur
             reason: format!("{} ends neither in .csv nor in .parquet", path.display()),
         }),
     }
+}
+
+/// Refuses what [`write`] would refuse to replace, before anything is written: of several results all or none.
+///
+/// # Errors
+/// A file that would be lost.
+pub(crate) fn check(columns: &Columns, path: &Path) -> Result<(), Failure> {
+    check_table(path, &names(columns))
 }
 
 /// Whether a file of this name becomes one in Parquet.
@@ -67,7 +79,11 @@ pub(crate) fn write_beside(
     let given = Given::open(given).map_err(|error| Failure::unreadable(given, error))?;
     let bytes =
         to_parquet(columns, Some(&given)).map_err(|error| Failure::unwritable(output, error))?;
-    write_result(output, &bytes)
+    write_parquet(output, &bytes, &names(columns))
+}
+
+fn names(columns: &Columns) -> Vec<&str> {
+    columns.iter().map(|(name, _)| name).collect()
 }
 
 /// The table as one Parquet file with one row group, Zstandard compressed; its first columns are those of the file given.

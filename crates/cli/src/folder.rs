@@ -28,7 +28,8 @@ use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
 use contents::flights_of;
 pub(crate) use contents::{
-    ModelsFound, deviations_of, is_superseded, models_of, stored_of, warn_of_strangers,
+    ModelsFound, deviations_of, is_superseded, models_of, stored_of, waiting_model,
+    warn_of_strangers,
 };
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
@@ -68,14 +69,14 @@ const FOLDERS: [&str; 5] = ["models", "segments", "flights", "deviations", "page
 /// Whether a path is that of a folder's state, or of a file of the kinds that a state names.
 pub(crate) fn is_of_a_state(path: &Path) -> bool {
     let Ok(path) = path.canonicalize() else { return false };
-    let is_named = |name: &str| path.file_name().is_some_and(|own| own == name);
-    let has_state =
-        |folder: Option<&Path>| folder.is_some_and(|f| f.join(folder_state::NAME).is_file());
-    let folder = path.parent();
-    let is_below = folder
-        .and_then(Path::file_name)
-        .is_some_and(|name| FOLDERS.iter().any(|folder| name == *folder));
-    is_named(folder_state::NAME) || (is_below && has_state(folder.and_then(Path::parent)))
+    path.file_name().is_some_and(|own| own == folder_state::NAME)
+        || path.parent().is_some_and(is_kept_by_a_state)
+}
+
+/// Whether a folder is one of those in which a folder of `adapt` keeps what it has learnt.
+pub(crate) fn is_kept_by_a_state(folder: &Path) -> bool {
+    folder.file_name().is_some_and(|name| FOLDERS.iter().any(|folder| name == *folder))
+        && folder.parent().is_some_and(|above| above.join(folder_state::NAME).is_file())
 }
 
 impl Folder {
@@ -91,6 +92,9 @@ impl Folder {
         }
         let failed = |error: std::io::Error| Failure::unwritable(&path, error);
         let made = !path.exists();
+        if !made && !path.is_dir() {
+            return Err(Failure::unwritable(&path, "it is a file, where a folder was expected"));
+        }
         std::fs::create_dir_all(&path).map_err(failed)?;
         let mut folder = Self {
             lock: Some(Lock::take(&path, busy)?),

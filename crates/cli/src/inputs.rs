@@ -99,6 +99,11 @@ fn collect_one(
     if any { Ok(()) } else { Err(Failure::unreadable(argument, "the pattern matches no file")) }
 }
 
+/// Whether a folder is one of those in which a folder of `adapt` keeps what it has learnt: its tables are no recordings.
+fn is_result_of_adapt(path: &Path) -> bool {
+    crate::folder::is_kept_by_a_state(path)
+}
+
 fn collect_folder(folder: &Path, endings: &[&str], collected: &mut Collected) {
     let listed = folder.canonicalize().and_then(|real| {
         if !collected.searched.insert(real) {
@@ -121,6 +126,9 @@ fn collect_folder(folder: &Path, endings: &[&str], collected: &mut Collected) {
     };
     for (path, kind) in entries {
         let is_folder = kind.is_dir() || (kind.is_symlink() && path.is_dir());
+        if is_folder && is_result_of_adapt(&path) {
+            continue;
+        }
         if is_folder {
             collect_folder(&path, endings, collected);
         } else if path

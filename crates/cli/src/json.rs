@@ -5,7 +5,7 @@ use pipeline::summary::RefusedSummary;
 use crate::args::JsonWanted;
 use crate::commands::Outcome;
 use crate::failure::Failure;
-use crate::files::outputs::{check_replaceable, would_lose};
+use crate::files::outputs::{check_replaceable, schema_of, would_lose};
 use crate::files::write_atomically;
 use crate::terminal;
 
@@ -21,7 +21,10 @@ pub(crate) fn check(wanted: JsonWanted<'_>) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::unwritable(path, "it is a folder; --json takes the name of a file"));
     }
-    let is_own = |text: &str| text.trim_start().starts_with(['{', '[']) || text.is_empty();
+    let is_own = |text: &str| {
+        let is_document = text.trim_start().starts_with(['{', '[']);
+        text.is_empty() || (is_document && schema_of(text).starts_with("cruisefit."))
+    };
     match check_replaceable(path, false, &[], is_own) {
         // There is no --force to advise.
         Err(Failure::WouldReplace { .. }) => {
@@ -91,7 +94,9 @@ mod tests {
         write_atomically(&path, b"CRUISE-REPORT 1\n").unwrap();
         assert!(check(JsonWanted::File(&path)).is_err());
         assert!(check(JsonWanted::File(folder.path())).is_err());
-        write_atomically(&path, b"{}\n").unwrap();
+        write_atomically(&path, b"{\"type\": \"FeatureCollection\"}\n").unwrap();
+        assert!(check(JsonWanted::File(&path)).is_err());
+        write_atomically(&path, b"{\"schema\": \"cruisefit.done/1\"}\n").unwrap();
         check(JsonWanted::File(&path)).unwrap();
     }
 }

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, show};
-use crate::files::outputs::check_replaceable;
+use crate::files::outputs::{check_no_state, check_replaceable};
 use crate::files::{read_text, write_atomically};
-use crate::folder::ModelsFound;
+use crate::folder::{ModelsFound, waiting_model};
 use pipeline::model_file::ModelFile;
 use pipeline::models::Models;
 
@@ -15,7 +15,10 @@ use pipeline::models::Models;
 /// A file that cannot be read, is not a model, is of a newer format, or whose checksum does not match; a folder of several.
 pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
     if !path.is_dir() {
-        return model_of_text(path, &read_text(path)?);
+        return match waiting_model(path)? {
+            Some(bytes) => model_of_bytes(path, &bytes),
+            None => model_of_text(path, &read_text(path)?),
+        };
     }
     let ModelsFound { mut models, damaged } = models_of(path)?;
     if let Some((_, failure)) = damaged.into_iter().next() {
@@ -65,8 +68,9 @@ fn other_kind(text: &str) -> Option<String> {
 /// Writes a model file: whole or not at all.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A file that cannot be written, or that a folder has learnt.
 pub(crate) fn write_model(model: &ModelFile, path: &Path) -> Result<(), Failure> {
+    check_no_state(path)?;
     let text = model.to_text().map_err(|error| Failure::unwritable(path, error))?;
     write_atomically(path, text.as_bytes())
 }

@@ -195,10 +195,15 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
     }
 }
 
+/// What follows a tail's name in a refusal.
+const AFTER_A_TAIL: [&str; 4] = [" flight ", " has ", " is ", " was "];
+
 /// The tail that a refusal is a matter of, and its reason without what differs from flight to flight.
 fn reason_of_tail(one: &RefusedReport) -> Option<(&str, String)> {
-    let tail = one.reason.strip_prefix("tail ")?.split(' ').next()?;
-    Some((tail, kinds::kind_of(&one.reason)))
+    // A tail's name may have blanks.
+    let rest = one.reason.strip_prefix("tail ")?;
+    let end = AFTER_A_TAIL.iter().filter_map(|word| rest.find(word)).min()?;
+    Some((&rest[..end], kinds::kind_of(&one.reason)))
 }
 
 fn tell_excerpt(path: &std::path::Path, line: usize, column: Option<usize>, reason: &str) {

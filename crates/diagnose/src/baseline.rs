@@ -310,6 +310,26 @@ impl Baseline {
         left * self.smooth_variance()
     }
 
+    /// Smooth functions of the remainder.
+    pub(crate) const fn smooth_functions(&self) -> usize {
+        self.parts.smooth.len()
+    }
+
+    /// How far each variable of the remainder lies beyond what was flown, in lengths, below it negative; 0 within it.
+    pub(crate) fn beyond(&self, response: &Response) -> impl Iterator<Item = f64> {
+        let references = &self.parts.references;
+        self.parts
+            .smooth
+            .iter()
+            .map(move |one| one.beyond(flown(one.variable(), response, references)))
+    }
+
+    /// Variance by which what is announced of a smooth function grows beyond what was flown, per cube of lengths.
+    pub(crate) fn growth_beyond(&self, function: usize) -> f64 {
+        let stated = self.interval_factor();
+        stated * stated * self.parts.smooth[function].growth() * self.smooth_variance()
+    }
+
     /// Whether a variable of the remainder lies beyond what was flown.
     pub(crate) fn is_beyond_flights(&self, response: &Response) -> bool {
         let of = |one: &Smooth| flown(one.variable(), response, &self.parts.references);

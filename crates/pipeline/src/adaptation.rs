@@ -159,7 +159,9 @@ pub fn settled(
         tracing::error!(tail = learnt.tail, "{error}");
     }
     if remainder == RemainderChoice::Learn {
-        stored.predicted = learning::remember_remainder(&model.initial, learnt, &stored.segments);
+        // `ModelFile::reference`, of which a part is borrowed already.
+        let reference = model.by_guide.as_deref().unwrap_or(&model.initial);
+        stored.predicted = learning::remember_remainder(reference, learnt, &stored.segments);
     } else if learnt.baseline.take().is_some() {
         notes.push(
             "the remainder of an earlier run is dropped: it belonged to the table before these flights"

@@ -140,9 +140,10 @@ impl Group<'_> {
         let baseline = self.baseline();
         let baseline = baseline.as_deref();
         let events_s = self.events_s(&asked.events);
+        let (model, drag_table) = self.model.held_against(predicts);
         let input = Input {
-            model: &self.model.initial,
-            drag_table: self.model.reference_table(predicts),
+            model,
+            drag_table,
             flights: &records,
             baseline: if asked.table_only { None } else { baseline },
             table: table.as_ref(),

@@ -154,9 +154,10 @@ impl Group<'_> {
             ModelOf::Tail => None,
         };
         let baseline = of_type.as_ref().or(own.as_deref());
+        let (model, drag_table) = self.model.held_against(predicts);
         let input = Input {
-            model: &self.model.initial,
-            drag_table: self.model.reference_table(predicts),
+            model,
+            drag_table,
             flights: records,
             baseline: if asked.table_only { None } else { baseline },
             table: table.as_ref(),

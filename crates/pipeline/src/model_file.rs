@@ -8,6 +8,7 @@
 mod applied;
 mod differences;
 mod error;
+mod guide_drag;
 mod text;
 
 pub use applied::{AppliedRecord, DiagnosisRecord};
@@ -30,8 +31,9 @@ use crate::condition_means::ConditionMeans;
 ///
 /// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read. Models without a
 /// baseline are written as format 1. 3: factors of the noise multiply what the aircraft file states of flights and of drift, too;
-/// those of format 2 stand for it.
-pub const FORMAT: u32 = 3;
+/// those of format 2 stand for it. 4: a baseline refers to the drag of the guide's rows, where the file has it; models without that drag
+/// are written as format 3 or 1.
+pub const FORMAT: u32 = 4;
 
 /// A model, and what it has learnt.
 #[derive(Clone, Debug)]
@@ -46,6 +48,8 @@ pub struct ModelFile {
     pub learnt: Option<Learnt>,
     /// Diagnoses whose effects the model contains, in the order in which they were applied.
     pub applied: Vec<AppliedRecord>,
+    /// The initial model with the drag of the guide's own rows; see [`reference`](Self::reference).
+    pub by_guide: Option<Box<ExtendedModel>>,
 }
 
 /// What the initial model's guide was like, and how well the polynomial fits it.
@@ -221,21 +225,30 @@ fn range(guide: &Guide, of: impl Fn(&GuidePoint) -> f64) -> Option<(f64, f64)> {
 impl ModelFile {
     /// The model file of a fresh initial model, with the laws' published settings.
     pub fn from_initial(initial: &InitialModel, guide: &Guide) -> Self {
+        let record = GuideRecord {
+            points: guide.points().len() as u64,
+            lift_coefficient: initial.fit.lift_coefficients,
+            mach: initial.fit.machs,
+            mass_kg: range(guide, |point| point.mass.to_kilograms()),
+            pressure_altitude_m: range(guide, |point| point.pressure_altitude.to_meters()),
+            residual_rms: initial.fit.residual_rms,
+            condition_number: initial.fit.condition_number,
+        };
+        let by_guide = guide_drag::with_drag_of_guide(initial, guide, &record);
         Self {
             initial: initial.model.clone().into(),
-            guide: GuideRecord {
-                points: guide.points().len() as u64,
-                lift_coefficient: initial.fit.lift_coefficients,
-                mach: initial.fit.machs,
-                mass_kg: range(guide, |point| point.mass.to_kilograms()),
-                pressure_altitude_m: range(guide, |point| point.pressure_altitude.to_meters()),
-                residual_rms: initial.fit.residual_rms,
-                condition_number: initial.fit.condition_number,
-            },
+            guide: record,
             settings: LawSettings::published(),
             learnt: None,
             applied: Vec::new(),
+            by_guide: by_guide.map(|model| Box::new(model.into())),
         }
+    }
+
+    /// What everything learnt beside a law's table refers to: the initial model with the drag of the guide's own rows, which six
+    /// coefficients do not hold; the initial model itself in files of programs that did not keep it. `[bayes.14]`
+    pub fn reference(&self) -> &ExtendedModel {
+        self.by_guide.as_deref().unwrap_or(&self.initial)
     }
 
     /// A model from the text of its file.
@@ -319,6 +332,11 @@ impl ModelFile {
                 "set of applied effects",
                 format!("{} against {}", other.told_effects(), self.told_effects()),
             ));
+        }
+        if self.initial == other.initial && self.reference() != other.reference() {
+            let told = |model: &Self| if model.by_guide.is_some() { "other rows" } else { "none" };
+            let difference = format!("{} against {}", told(other), told(self));
+            return Some(("drag of the guide's rows beside the polynomial", difference));
         }
         if self.initial != other.initial {
             return Some((

@@ -7,12 +7,16 @@ use crate::evaluation::evaluate;
 use crate::model_file::ModelFile;
 use crate::models::Models;
 use crate::not_evaluated;
+use crate::segments_table::Evaluated;
 use crate::summary::{RefusedSummary, ReportsSummary};
 use effects::ExtendedModel;
 use flight::{Segment, Severity};
 use lut::Table;
 
 use crate::reading::{FlightRead, Reading, RefusedReport};
+
+/// Flights of a tail from whose median another flight can be told.
+const FLIGHTS_THAT_TELL: usize = 3;
 
 /// What the flights of a tail are compared with.
 #[derive(Clone, Copy, Debug)]
@@ -87,14 +91,62 @@ fn judged<'a>(flights: impl Iterator<Item = (Book<'a>, &'a FlightRead)>) -> Vec<
     for (tail, mut of_tail) in tails {
         let Some(&(book, _)) = of_tail.first() else { continue };
         of_tail.sort_by(|(_, one), (_, other)| one.order(other));
-        let segments = of_tail.iter().flat_map(|(_, flight)| &flight.reduced.segments);
-        let found = book::against_book(tail, &evaluate(book.model, book.table, segments));
+        let flights: Vec<OfFlight<'_>> = of_tail
+            .iter()
+            .map(|(_, flight)| {
+                (*flight, evaluate(book.model, book.table, &flight.reduced.segments))
+            })
+            .collect();
+        let strays = strays(&book, &flights);
+        let rest = flights.iter().enumerate().filter(|(place, _)| !strays.contains_key(place));
+        let segments: Vec<Option<Evaluated>> =
+            rest.flat_map(|(_, (_, evaluated))| evaluated.iter().cloned()).collect();
+        let found = book::against_book(tail, &segments);
         // All that was learnt is evaluated only where something is off.
         if !found.is_empty() {
-            all.extend(in_the_light_of(&book, found, of_tail.len()));
+            all.extend(in_the_light_of(&book, found, flights.len() - strays.len()));
         }
+        all.extend(strays.into_values().map(|finding| Judged { finding, is_slip: true }));
     }
     all
+}
+
+/// What segments of a flight show against a book.
+type OfFlight<'a> = (&'a FlightRead, Vec<Option<Evaluated>>);
+
+/// Flights that are far from what others of their tail burn, by their place: those that it has learnt where these are enough, else
+/// all. Where every flight is, it is a matter of the tail.
+fn strays(book: &Book<'_>, flights: &[OfFlight<'_>]) -> BTreeMap<usize, DataFinding> {
+    let off: Vec<f64> =
+        flights.iter().filter_map(|(_, evaluated)| book::flight_off_percent(evaluated)).collect();
+    // All that was learnt is evaluated only where flights differ from each other.
+    let apart = |one: f64| off.iter().any(|other| (one - other).abs() > book::PLAUSIBLE_PERCENT);
+    if !off.iter().copied().any(apart) {
+        return BTreeMap::new();
+    }
+    let learnt = book.learnt.unwrap_or_default();
+    let known: Vec<f64> = learnt
+        .chunk_by(|one, other| one.identity == other.identity)
+        .filter_map(|flight| book::flight_off_percent(&evaluate(book.model, book.table, flight)))
+        .collect();
+    let is_known = known.len() >= FLIGHTS_THAT_TELL;
+    let others = if is_known { known } else { [known, off.clone()].concat() };
+    if !is_known && others.len() <= FLIGHTS_THAT_TELL {
+        return BTreeMap::new();
+    }
+    let known_percent = median(others);
+    let stray = |(place, (flight, evaluated)): (usize, &OfFlight<'_>)| {
+        Some((place, book::stray(&flight.reduced.identity, evaluated, known_percent)?))
+    };
+    let found: BTreeMap<usize, DataFinding> =
+        flights.iter().enumerate().filter_map(stray).collect();
+    if found.len() < off.len() { found } else { BTreeMap::new() }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { values[middle - 1].midpoint(values[middle]) }
 }
 
 /// What so many flights of a tail show, given what it has learnt before.
@@ -128,7 +180,7 @@ pub enum Absurd {
 }
 
 /// Serious findings in words, empty where there are none; unless they are accepted, the flights of tails that are absurdly
-/// far off the book, or of which all lie outside its table, are moved to the refused ones. Nothing could be learnt of the latter, and
+/// far off the book, single flights that are far from what others of their tail burn, or of which all lie outside its table, are moved to the refused ones. Nothing could be learnt of the latter, and
 /// what is known already is refused when its mapping is corrected. `book_of` a tail: what its flights are compared with.
 pub fn set_aside_absurd<'m>(
     reading: &mut Reading,
@@ -148,26 +200,35 @@ pub fn set_aside_absurd<'m>(
     if absurd == Absurd::Accept {
         return told;
     }
-    let refused: BTreeMap<String, String> = of_book
+    let refused: BTreeMap<(String, String, String), String> = of_book
         .into_iter()
         .filter(|judged| judged.is_slip)
         .map(|Judged { finding, .. }| {
             // What fuel used decides is in what is told.
-            let of_it = |one: &&DataFinding| one.tail == finding.tail && one.code == finding.code;
+            let of_it =
+                |one: &&DataFinding| one.code == finding.code && whose(one) == whose(&finding);
             let cause = &serious.iter().find(of_it).unwrap_or(&finding).likely_cause;
             let reason = format!(
                 "{}: {}; likely {cause}; --accept uses it nevertheless",
                 finding.tail, finding.message
             );
-            (finding.tail, reason)
+            (whose(&finding), reason)
         })
         .collect();
     let flights = std::mem::take(&mut reading.flights);
     for flight in flights {
-        match refused.get(&flight.reduced.identity.tail) {
+        let identity = &flight.reduced.identity;
+        let of_tail = (identity.tail.clone(), String::new(), String::new());
+        let own = (identity.tail.clone(), identity.flight.clone(), identity.start.to_string());
+        match refused.get(&of_tail).or_else(|| refused.get(&own)) {
             Some(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
             None => reading.flights.push(flight),
         }
     }
     told
+}
+
+/// The tail of a finding, and the flight and START where it is of one alone.
+fn whose(finding: &DataFinding) -> (String, String, String) {
+    (finding.tail.clone(), finding.flight.clone(), finding.start.clone())
 }

@@ -34,16 +34,16 @@ impl ModelFile {
         }
         let baseline = self.learnt.as_ref()?.baseline.as_ref()?;
         // A baseline was learnt against this very model: it took its effects then.
-        WholeModel::new(&self.initial, baseline).ok()
+        WholeModel::new(self.reference(), baseline).ok()
     }
 
-    /// The table that flights are held against together with what the model has learnt: the initial one, which everything
-    /// learnt refers to; the learnt table where there is nothing else.
-    pub fn reference_table(&self, predicts: Predicts) -> &Table {
+    /// The model and the table that flights are held against together with what the model has learnt: what everything learnt refers
+    /// to; the initial model with the learnt table where there is nothing else.
+    pub fn held_against(&self, predicts: Predicts) -> (&ExtendedModel, &Table) {
         let baseline = self.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
         match baseline.filter(|_| predicts == Predicts::WholeModel) {
-            Some(_) => self.initial.drag_table(),
-            None => self.drag_coefficient(),
+            Some(_) => (self.reference(), self.reference().drag_table()),
+            None => (&self.initial, self.drag_coefficient()),
         }
     }
 }

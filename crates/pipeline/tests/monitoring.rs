@@ -25,6 +25,7 @@ fn model() -> ModelFile {
         settings: LawSettings::published(),
         learnt: None,
         applied: Vec::new(),
+        by_guide: None,
     }
 }
 

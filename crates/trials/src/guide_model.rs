@@ -71,4 +71,43 @@ mod tests {
             assert!(model.guide.residual_rms > 1e-5, "{aircraft}: {:?}", model.guide);
         }
     }
+    /// The oracle is the simulator's drag times the error that was drawn, at the nodes within the guide's range: what flights are held
+    /// against has the drag rise that the polynomial lost.
+    #[test]
+    fn what_is_learnt_refers_to_the_drag_of_the_guides_rows() {
+        for aircraft in ["citation_x", "a320", "regional_jet"] {
+            let plan = format!(
+                "(seed: 4, aircraft: Preset({aircraft}), parts: [(denied: guide, background: clean, kind: null, repeats: 1)])"
+            );
+            let plan = TrialPlan::from_ron(&plan).unwrap();
+            let drawn = DrawnCase::draw(&plan, &plan.cases(2).remove(0)).unwrap();
+            let truth = drawn.aircraft();
+            let sensors = drawn.flown().plan().sensors.sensors();
+            let stated = stated_sensors(&sensors, &Scatter::default(), truth);
+            let model = model_of_guide(&drawn, stated).unwrap();
+            let at = truth.reference_conditions();
+            let rms_over_guide = |table: &lut::Table| {
+                let grid = table.grid();
+                let within = |value: f64, (low, high): (f64, f64)| (low..=high).contains(&value);
+                let errors: Vec<f64> = (0..grid.nodes())
+                    .map(|node| (node, grid.coordinates(node)))
+                    .filter(|(_, (lift, mach))| {
+                        within(*lift, model.guide.lift_coefficient)
+                            && within(*mach, model.guide.mach)
+                    })
+                    .map(|(node, (lift, mach))| {
+                        let off = drawn.book_error().at(mach, lift);
+                        let drag =
+                            truth.drag_coefficient(lift, Mach::new(mach), &at, drawn.physics());
+                        table.value_at_node(node) / (drag * (1.0 + off)) - 1.0
+                    })
+                    .collect();
+                (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+            };
+            let polynomial = rms_over_guide(model.initial.drag_table());
+            let reference = rms_over_guide(model.reference().drag_table());
+            println!("{aircraft}: polynomial {polynomial:.4}, reference {reference:.4}");
+            assert!(reference < 0.6 * polynomial, "{aircraft}: {reference} {polynomial}");
+        }
+    }
 }

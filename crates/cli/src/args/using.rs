@@ -122,7 +122,7 @@ pub(crate) struct OptimumArgs {
     #[arg(long, value_name = "MODEL.ron")]
     pub(crate) model: PathBuf,
     /// Cost index, in kilograms of fuel per minute (Airbus); one of Boeing's, 100 lb/h, is 0.756
-    #[arg(long, value_name = "N", value_parser = cost_index)]
+    #[arg(long, value_name = "N", value_parser = cost_index, allow_negative_numbers = true)]
     pub(crate) cost_index: Option<f64>,
     /// Gross masses, kg [default: five about the mean of the learnt flights, or across those of
     /// the guide]
@@ -134,7 +134,7 @@ pub(crate) struct OptimumArgs {
         value_name = "C,…",
         value_delimiter = ',',
         default_value = "0",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub(crate) isa_deviation: Vec<f64>,
     /// Tailwinds, kt; negative for headwinds
@@ -143,7 +143,7 @@ pub(crate) struct OptimumArgs {
         value_name = "KT,…",
         value_delimiter = ',',
         default_value = "0",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub(crate) tailwind: Vec<f64>,
     /// Pressure altitudes to choose from, ft [default: every 1000 up to the highest of guide and

@@ -9,6 +9,7 @@ mod results;
 mod tail;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::{LawAsked, RemainderChoice, Start, Starts};
 use pipeline::distinct::warn_of_copies;
@@ -62,6 +63,9 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let by_model = with_models(tails, &models, &mut refused);
     check_refused(&refused, files, arguments.reports.strict, by_model.is_empty())?;
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
+    if arguments.restart {
+        check_inputs_stay(&arguments.output, &arguments.reports.reports)?;
+    }
     let mut folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
     results::check_own(&folder)?;
     let mut starts = Starts::new(law, &arguments.reports.criteria.name, remainder_of(arguments));
@@ -187,11 +191,17 @@ fn begun_alike<'a>(
     if !goes_on && let Some(new) = alike.values().next() {
         // What all tails of a folder have in common is asked of the others.
         let states = || folder.tails().into_iter().filter_map(|tail| folder.state_of(&tail));
-        if states().any(|state| new.0.learns_more_than(&state.begun))
+        let otherwise = if states().any(|state| new.0.learns_more_than(&state.begun)) {
+            Some(TABLE_ALONE)
+        } else if states().any(|state| new.0.learns_less_than(&state.begun)) {
+            Some(MORE_THAN_TABLE)
+        } else {
+            None
+        };
+        if let Some(difference) = otherwise
             && states().all(|state| state.begun != new.0.begun)
         {
-            let folder = show(&arguments.output);
-            let difference = TABLE_ALONE.to_owned();
+            let (folder, difference) = (show(&arguments.output), difference.to_owned());
             return Err(Failure::BegunOtherwise { folder, what: "setting", difference });
         }
         let known = folder.tails().into_iter().find_map(|tail| folder.load(&tail).ok());
@@ -245,6 +255,10 @@ fn learn_all(
 /// What was begun with --no-remainder is not what this run would make of it.
 const TABLE_ALONE: &str = "the table alone was learnt, and more would be now; add --no-remainder";
 
+/// And the other way round.
+pub(super) const MORE_THAN_TABLE: &str =
+    "more than the table was learnt, which --no-remainder would drop";
+
 const fn remainder_of(arguments: &AdaptArgs) -> RemainderChoice {
     if arguments.no_remainder { RemainderChoice::Leave } else { RemainderChoice::Learn }
 }
@@ -268,6 +282,9 @@ fn difference(
     if folder.state_of(tail).is_some_and(|state| start.learns_more_than(&state.begun)) {
         return Ok(Some(Otherwise::Begun("setting", TABLE_ALONE.to_owned())));
     }
+    if folder.state_of(tail).is_some_and(|state| start.learns_less_than(&state.begun)) {
+        return Ok(Some(Otherwise::Begun("setting", MORE_THAN_TABLE.to_owned())));
+    }
     // A damaged tail is refused when its flights are.
     let Ok(stored) = folder.load(tail) else { return Ok(None) };
     let type_of = |model: &ModelFile| model.initial.aircraft().type_code().to_owned();
@@ -279,6 +296,23 @@ fn difference(
     let begun =
         start.difference(tail, &stored.model).map_err(|error| tail::not_correctable(&error))?;
     Ok(begun.map(|(what, difference)| Otherwise::Begun(what, difference)))
+}
+
+/// What --restart moves out of the way must not hold what is read: the next night would find nothing.
+fn check_inputs_stay(output: &Path, reports: &[PathBuf]) -> Result<(), Failure> {
+    let Ok(output) = output.canonicalize() else { return Ok(()) };
+    let inside = |path: &&PathBuf| path.canonicalize().is_ok_and(|path| path.starts_with(&output));
+    match reports.iter().find(inside) {
+        None => Ok(()),
+        Some(path) => Err(Failure::BadArgument {
+            argument: "--restart",
+            reason: format!(
+                "{} lies in {}, which would be moved out of the way with it; write to another folder",
+                show(path),
+                show(&output)
+            ),
+        }),
+    }
 }
 
 fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {

@@ -74,14 +74,14 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let path = arguments.output.join("diagnosis.json");
     let document = DiagnosisDocument::new(&asked, &reports, &diagnoses).with_fleets(&fleets);
     let json = document.to_json().map_err(|error| Failure::unwritable(&path, error))?;
+    let gaps = (gaps_table::table(&diagnoses, &figures), arguments.output.join("gaps.csv"));
+    crate::columns::check(&gaps.0, &gaps.1)?;
+    fleet::check(&fleets, &arguments.output)?;
     write_atomically(&path, json.as_bytes())?;
     let options = asked.in_words(&arguments.reports.criteria.name);
     let html = page::diagnosis(&reports, &diagnoses, &figures, document.fleets(), &options);
     write_atomically(&arguments.output.join("diagnosis.html"), neutral(&html).as_bytes())?;
-    crate::columns::write(
-        &gaps_table::table(&diagnoses, &figures),
-        Some(&arguments.output.join("gaps.csv")),
-    )?;
+    crate::columns::write(&gaps.0, Some(&gaps.1))?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
         append_lines(diagnosed, &mut text);

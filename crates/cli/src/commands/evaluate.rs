@@ -9,6 +9,7 @@ use crate::args::EvaluateArgs;
 use crate::columns;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport};
+use crate::files::outputs::check_not_read;
 use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
@@ -25,7 +26,19 @@ use pipeline::whole_model::Predicts;
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
+    for output in [&arguments.output, &arguments.fuel_factors] {
+        for read in arguments.reports.reports.iter().chain(&arguments.models.models) {
+            check_not_read(output.as_deref(), read)?;
+        }
+    }
     let Evaluation { summary, refused, tails } = evaluate(arguments, progress)?;
+    let factors = arguments.fuel_factors.as_deref().map(|path| {
+        let all: Vec<FuelFactor> = tails.iter().flat_map(EvaluatedTail::fuel_factors).collect();
+        (fuel_factor::columns(&all), path)
+    });
+    if let Some((factors, path)) = &factors {
+        columns::check(factors, path)?;
+    }
     if let Some(path) = &arguments.output {
         let segments: Vec<Vec<Segment>> = tails.iter().map(EvaluatedTail::segments).collect();
         let mut flights = Vec::new();
@@ -36,9 +49,8 @@ pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcom
             flights.iter().map(|(segments, residuals)| (*segments, residuals)).collect();
         columns::write(&residuals::columns(&rows), Some(path))?;
     }
-    if let Some(path) = &arguments.fuel_factors {
-        let factors: Vec<FuelFactor> = tails.iter().flat_map(EvaluatedTail::fuel_factors).collect();
-        columns::write(&fuel_factor::columns(&factors), Some(path))?;
+    if let Some((factors, path)) = &factors {
+        columns::write(factors, Some(path))?;
     }
     Ok(Outcome { refused, ..Outcome::with_json(summary.to_text(), summary.to_json()) })
 }

@@ -8,6 +8,7 @@ use perf_model::{Aircraft, Guide, InitialModel};
 use crate::args::InitArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
+use crate::files::outputs::check_not_read;
 use crate::files::read_text;
 use crate::models::{check_model_replaceable, write_model};
 use pipeline::model_file::ModelFile;
@@ -17,6 +18,9 @@ use pipeline::model_file::ModelFile;
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
+    for read in [&arguments.aircraft, &arguments.guide].into_iter().chain(&arguments.sensors) {
+        check_not_read(Some(&arguments.output), read)?;
+    }
     let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
         Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))
     })?;

@@ -65,12 +65,13 @@ fn presets_as_text(name: &str) -> Result<Outcome, Failure> {
 
 fn first_mapping_of(path: &Path) -> Result<(String, Tried), Failure> {
     let recording = open(path).map_err(|reason| Failure::unreadable(path, reason))?;
-    let text = recording
-        .beginning(LOOKED_AT_BYTES)
-        .and_then(|beginning| first_mapping(&beginning))
-        .map_err(|refusal| {
-            Failure::bad_file(path, RefusedReport::at(path.to_owned(), &refusal).reason)
-        })?;
+    let refused =
+        |refusal| Failure::bad_file(path, RefusedReport::at(path.to_owned(), &refusal).reason);
+    let beginning = recording.beginning(LOOKED_AT_BYTES).map_err(refused)?;
+    if beginning.starts_with(b"CRUISE-REPORT") {
+        return Err(Failure::bad_file(path, "a cruise report, which is read without a mapping"));
+    }
+    let text = first_mapping(&beginning).map_err(refused)?;
     // What comes of it is said beside it: standard output may be the mapping file.
     let tried = tried(&text, path);
     crate::terminal::tell(&tried.words());

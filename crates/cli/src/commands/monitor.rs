@@ -90,6 +90,11 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
 
 fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Result<(), Failure> {
     make_folder(folder)?;
+    let file_of = |name: &str| folder.join(format!("{name}.csv"));
+    let tables = tables_but_flights(document);
+    for table in &tables {
+        columns::check(&table.columns, &file_of(table.name))?;
+    }
     write_streamed(&folder.join("monitor.json"), |to| {
         let mut to = BufWriter::new(to);
         document.write_json(&mut to)?;
@@ -99,10 +104,10 @@ fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Resul
         &folder.join("monitor.html"),
         neutral(&page::monitoring(document, options)).as_bytes(),
     )?;
-    for table in tables_but_flights(document) {
-        columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
+    for table in tables {
+        columns::write(&table.columns, Some(&file_of(table.name)))?;
     }
-    write_streamed(&folder.join(format!("{FLIGHTS}.csv")), |to| {
+    write_streamed(&file_of(FLIGHTS), |to| {
         for (place, table) in flights_by_tail(document).enumerate() {
             to.write_all(&if place == 0 { table.to_csv() } else { table.to_csv_rows() })?;
         }

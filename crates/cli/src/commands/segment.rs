@@ -8,6 +8,7 @@ use crate::args::SegmentArgs;
 use crate::columns;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
+use crate::files::outputs::check_not_read;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
 use crate::terminal;
@@ -20,6 +21,9 @@ use pipeline::summary::{NO_SEGMENT, aligned, counted, other_files_words};
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome, Failure> {
+    for read in &arguments.reports.reports {
+        check_not_read(arguments.output.as_deref(), read)?;
+    }
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();

@@ -15,6 +15,7 @@ use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport};
 use crate::files::standard_input;
 use crate::folder::state::NAME;
+use crate::folder::waiting_model;
 use crate::models::model_of_bytes;
 use pipeline::model_file::{AppliedRecord, LawState, Learnt, ModelFile};
 use pipeline::monitoring::{self, MonitorDocument, Rows, SCHEMA as MONITOR};
@@ -30,7 +31,10 @@ const GZIP: [u8; 2] = [0x1f, 0x8b];
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
     let path = file_of(&arguments.file);
-    let bytes = bytes_of(&path)?;
+    let bytes = match waiting_model(&path)? {
+        Some(bytes) => bytes,
+        None => bytes_of(&path)?,
+    };
     if bytes.starts_with(b"CRUISE-REPORT") || bytes.starts_with(&GZIP) {
         return match ::report::Reader::new().read(&bytes) {
             Ok(parsed) => Ok(report::outcome(&parsed)),

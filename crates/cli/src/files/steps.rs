@@ -18,7 +18,17 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 pub(crate) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     #[cfg(test)]
     faults::renaming(from, to)?;
-    std::fs::rename(from, to)
+    match std::fs::rename(from, to) {
+        // A folder's part may lie on another file system: a copy beside its place is renamed there.
+        Err(error) if error.kind() == io::ErrorKind::CrossesDevices && from.is_file() => {
+            let beside = to.with_extension("moving");
+            std::fs::copy(from, &beside)?;
+            std::fs::File::open(&beside)?.sync_all()?;
+            std::fs::rename(&beside, to)?;
+            std::fs::remove_file(from)
+        }
+        result => result,
+    }
 }
 
 /// Makes a folder; one that is there already is no error.

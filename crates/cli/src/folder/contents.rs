@@ -99,13 +99,7 @@ pub(super) fn stored_tail(
 /// # Errors
 /// A file that is damaged.
 pub(crate) fn stored_of(model: &Path) -> Result<Option<StoredTail>, Failure> {
-    let name = |path: Option<&Path>| path.and_then(Path::file_name).map(ToOwned::to_owned);
-    let models = model.parent().filter(|models| name(Some(models)).is_some_and(|n| n == "models"));
-    let (Some(above), Some(file)) = (models.and_then(Path::parent), name(Some(model))) else {
-        return Ok(None);
-    };
-    let folder = if above.as_os_str().is_empty() { Path::new(".") } else { above };
-    let file = format!("models/{}", file.to_string_lossy());
+    let Some((folder, file)) = place_of(model) else { return Ok(None) };
     loop {
         let Some(state) = state::read(folder)? else { return Ok(None) };
         let Some((tail, entry)) = state.tails.iter().find(|(_, entry)| entry.model.file == file)
@@ -119,6 +113,32 @@ pub(crate) fn stored_of(model: &Path) -> Result<Option<StoredTail>, Failure> {
             Err(failure) => return Err(failure),
         }
     }
+}
+
+/// The bytes of a model file that still waits for its place, as a run leaves it that was killed after its state was stored: what lies
+/// there is of the generation before. `None` of every other file.
+///
+/// # Errors
+/// A state or file that is damaged.
+pub(crate) fn waiting_model(model: &Path) -> Result<Option<Vec<u8>>, Failure> {
+    let Some((folder, file)) = place_of(model) else { return Ok(None) };
+    let Some(state) = state::read(folder)? else { return Ok(None) };
+    if !state::waiting(&state, folder).is_dir() {
+        return Ok(None);
+    }
+    let entry = state.tails.values().find(|entry| entry.model.file == file);
+    entry.map(|entry| state::bytes_of(&state, folder, &entry.model)).transpose()
+}
+
+/// The folder of `adapt` of which a file may be a model, and the name under which its state has it.
+fn place_of(model: &Path) -> Option<(&Path, String)> {
+    let models = model.parent()?;
+    if models.file_name()? != "models" {
+        return None;
+    }
+    let above = models.parent()?;
+    let folder = if above.as_os_str().is_empty() { Path::new(".") } else { above };
+    Some((folder, format!("models/{}", model.file_name()?.to_string_lossy())))
 }
 
 /// The flights that a tail has learnt.

@@ -1,6 +1,6 @@
 //! The bytes of an input file, within limits.
 
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, Read};
 use std::path::Path;
 use std::time::Duration;
@@ -12,8 +12,6 @@ use crate::files::standard_input;
 /// How often a file is tried again when the system has no file handle left, and how long after each time.
 const TRIES: u32 = 100;
 const BETWEEN_TRIES: Duration = Duration::from_millis(20);
-
-const NO_FILE: &str = "not a regular file: write what it gives to a file first";
 
 /// Reads a whole file.
 ///
@@ -56,14 +54,24 @@ pub(super) fn open(path: &Path) -> Result<File, String> {
             }
             // What cannot be opened may be no file either, and then that is what has to be said.
             Err(error) => match path.metadata() {
-                Ok(known) if !known.is_file() => return Err(NO_FILE.to_owned()),
+                Ok(known) if !known.is_file() => return Err(no_file(&known)),
                 _ => return Err(error.to_string()),
             },
             Ok(file) => file,
         };
         let known = file.metadata().map_err(|error| error.to_string())?;
-        return if known.is_file() { Ok(file) } else { Err(NO_FILE.to_owned()) };
+        return if known.is_file() { Ok(file) } else { Err(no_file(&known)) };
     }
+}
+
+/// Why what is no file is not read.
+fn no_file(known: &Metadata) -> String {
+    let reason = if known.is_dir() {
+        "a folder, where a file was expected"
+    } else {
+        "not a regular file: write what it gives to a file first"
+    };
+    reason.to_owned()
 }
 
 /// Opens a file for reading; a pipe without waiting for somebody to write into it.

@@ -599,7 +599,7 @@ fn what_a_command_did_not_make_is_not_replaced() {
         arguments.extend(more);
         cruisefit(&arguments)
     };
-    init(&learnt, &[]).expect(2).says("was not made by this command").says("--force");
+    init(&learnt, &[]).expect(2).says("part of what a folder has learnt");
     assert_eq!(bytes_below(&output), before);
     init(&model, &[]).expect(0);
     cruisefit(&[

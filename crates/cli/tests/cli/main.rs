@@ -25,6 +25,7 @@ mod gauges;
 mod guide;
 mod hostile_system;
 mod json_schema;
+mod left_alone;
 mod merging;
 mod monitor;
 mod not_evaluated;

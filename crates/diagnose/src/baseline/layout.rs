@@ -35,6 +35,8 @@ pub(crate) struct NuisanceLayout {
     pub(crate) gauges: Range<usize>,
     /// Loadings of the drag table's nodes.
     pub(crate) table: Range<usize>,
+    /// Smooth functions beyond what was flown.
+    pub(crate) beyond: Range<usize>,
 }
 
 /// What is uncertain besides a baseline.
@@ -48,12 +50,26 @@ pub(crate) struct Uncertain {
     pub(crate) gauges: bool,
     /// Loadings of the drag table.
     pub(crate) table_rank: usize,
+    /// Columns of smooth functions beyond what was flown.
+    pub(crate) beyond: usize,
 }
 
 impl NuisanceLayout {
     /// Of a baseline alone: what its covariance is over.
     pub(crate) fn of_baseline(remainder: usize, contrasts: usize, drag: usize) -> Self {
-        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0, 0, 0])
+        Self::tiled([
+            remainder,
+            contrasts,
+            DECK_TERMS,
+            STANDING_EFFECTS.len(),
+            drag,
+            0,
+            0,
+            0,
+            0,
+            0,
+            0,
+        ])
     }
 
     /// The same, or none where there is no baseline, with what is uncertain at any time: chords, acceleration, and what is named.
@@ -75,11 +91,12 @@ impl NuisanceLayout {
             bleed,
             gauges,
             uncertain.table_rank,
+            uncertain.beyond,
         ])
     }
 
     /// Widths in the order of the fields.
-    fn tiled(widths: [usize; 10]) -> Self {
+    fn tiled(widths: [usize; 11]) -> Self {
         let mut end = 0;
         let mut widths = widths.into_iter();
         let mut next = || {
@@ -98,12 +115,13 @@ impl NuisanceLayout {
             bleed: next(),
             gauges: next(),
             table: next(),
+            beyond: next(),
         }
     }
 
     /// Number of columns.
     pub(crate) const fn len(&self) -> usize {
-        self.table.end
+        self.beyond.end
     }
 
     /// Columns of a baseline's coefficients: those that its covariance is over.
@@ -130,6 +148,7 @@ mod tests {
             &layout.bleed,
             &layout.gauges,
             &layout.table,
+            &layout.beyond,
         ] {
             for column in range.clone() {
                 owners[column] += 1;
@@ -145,13 +164,19 @@ mod tests {
             assert_tiled(&baseline);
             assert_eq!(baseline.of_baseline_range(), 0..baseline.len());
             for (table_rank, any) in [(0, false), (285, true)] {
-                let uncertain = Uncertain { deck: false, bleed: any, gauges: any, table_rank };
+                let uncertain = Uncertain {
+                    bleed: any,
+                    gauges: any,
+                    table_rank,
+                    beyond: 6,
+                    ..Uncertain::default()
+                };
                 let design = NuisanceLayout::of_design(Some(&baseline), uncertain);
                 assert_tiled(&design);
                 // What a baseline's covariance is over has the same places in the design.
                 assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
                 assert_eq!(design.standing_effects, baseline.standing_effects);
-                let others = CHORD_COLUMNS + 1 + 2 * usize::from(any) + table_rank;
+                let others = CHORD_COLUMNS + 1 + 2 * usize::from(any) + table_rank + 6;
                 assert_eq!(design.len(), baseline.len() + others);
             }
         }

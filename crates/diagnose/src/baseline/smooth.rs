@@ -165,6 +165,25 @@ impl Smooth {
         (value(first + distance), value(last - distance))
     }
 
+    /// How far a value lies beyond those that were flown, in lengths, below them negative; 0 within them.
+    pub(crate) fn beyond(&self, value: f64) -> f64 {
+        let z = self.at(value);
+        let beyond = self.text.beyond(z);
+        let (first, last) = self.text.knots;
+        if beyond <= BEYOND_BY_ROUNDING {
+            0.0
+        } else if z > f64::midpoint(first, last) {
+            beyond
+        } else {
+            -beyond
+        }
+    }
+
+    /// Growth of what is not known beyond the flown values, of the process' variance per cube of lengths.
+    pub(crate) const fn growth(&self) -> f64 {
+        self.text.growth
+    }
+
     /// Whether a value lies beyond those that were flown.
     pub(crate) fn is_beyond(&self, value: f64) -> bool {
         self.text.beyond(self.at(value)) > BEYOND_BY_ROUNDING

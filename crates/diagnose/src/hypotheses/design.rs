@@ -1,5 +1,6 @@
 //! The whitened linear model of a flight: which columns there are, and their rows.
 
+mod beyond;
 mod blocks;
 mod rows_of_segment;
 mod smooth_background;
@@ -11,6 +12,7 @@ use faer::Mat;
 
 use crate::baseline::Baseline;
 use crate::baseline::layout::{NuisanceLayout, Uncertain};
+use crate::hypotheses::design::beyond::Beyond;
 use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
@@ -45,6 +47,7 @@ struct Nuisance<'a> {
     /// Share of the recorded accelerations' mean square that their error has.
     acceleration: f64,
     table: Option<&'a TableUncertainty>,
+    beyond: Beyond,
 }
 
 impl<'a> Design<'a> {
@@ -63,7 +66,9 @@ impl<'a> Design<'a> {
         let effects = data.columns();
         let acceleration = share_of_error(data);
         let is_bled = |row: &SegmentRow| row.point.anti_ice.is_some_and(|share| share > 0.0);
+        let beyond = Beyond::of(baseline, &data.segments);
         let uncertain = Uncertain {
+            beyond: beyond.len(),
             deck: data.channels.n2,
             bleed: data.channels.n2 && data.segments.iter().any(is_bled),
             gauges: data.flights.iter().any(|flight| flight.gauge.is_some()),
@@ -72,7 +77,7 @@ impl<'a> Design<'a> {
         let layout = baseline.map(Baseline::layout);
         let layout = NuisanceLayout::of_design(layout.as_ref(), uncertain);
         let nuisance = effects..effects + layout.len();
-        let parts = Nuisance { layout, baseline, acceleration, table };
+        let parts = Nuisance { layout, baseline, acceleration, table, beyond };
 
         let kinds = if data.channels.n2 { 2 } else { 1 };
         let background = SmoothBackground::new(data, references, values, kinds);
@@ -216,6 +221,14 @@ impl<'a> Design<'a> {
             baseline.write_remainder(&row.response, terms);
             let unit = rows.of_remainder(baseline.thrust_share());
             for (column, value) in columns(&layout.remainder).zip(&*terms) {
+                rows.put_white(column, &unit, *value);
+            }
+        }
+        if let Some(baseline) = parts.baseline.filter(|_| !layout.beyond.is_empty()) {
+            let terms = &mut scratch[..layout.beyond.len()];
+            parts.beyond.write(baseline, row, terms);
+            let unit = rows.of_remainder(baseline.thrust_share());
+            for (column, value) in columns(&layout.beyond).zip(&*terms) {
                 rows.put_white(column, &unit, *value);
             }
         }

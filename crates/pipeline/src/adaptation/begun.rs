@@ -28,8 +28,9 @@ pub struct Start<'a> {
     criteria: &'a str,
     /// SHA-256 of all of it, by which a tail is known to have been begun alike.
     pub begun: String,
-    /// The same of a tail that is to learn its table alone, where this one is to learn more.
-    with_table_alone: Option<String>,
+    remainder: RemainderChoice,
+    /// The same of a tail for which the other choice was made; none by law `paper`, which has no remainder.
+    with_other_choice: Option<String>,
 }
 
 impl Start<'_> {
@@ -42,7 +43,17 @@ impl Start<'_> {
     /// prediction of it means would change.
     #[must_use]
     pub fn learns_more_than(&self, begun: &str) -> bool {
-        self.with_table_alone.as_deref() == Some(begun)
+        self.remainder == RemainderChoice::Learn && self.is_other_choice(begun)
+    }
+
+    /// Whether a tail that was begun with this was to learn more than the table alone, which is what it would learn now.
+    #[must_use]
+    pub fn learns_less_than(&self, begun: &str) -> bool {
+        self.remainder == RemainderChoice::Leave && self.is_other_choice(begun)
+    }
+
+    fn is_other_choice(&self, begun: &str) -> bool {
+        self.with_other_choice.as_deref() == Some(begun)
     }
 
     /// A model of a tail that has learnt nothing.
@@ -109,8 +120,8 @@ pub struct Starts<'a> {
 #[derive(Clone, Debug)]
 struct Begun {
     asked: String,
-    /// Where more than the table is to be learnt: of one that is to learn the table alone.
-    with_table_alone: Option<String>,
+    /// Of one for which the other choice of a remainder was made.
+    with_other_choice: Option<String>,
 }
 
 impl<'a> Starts<'a> {
@@ -129,12 +140,12 @@ impl<'a> Starts<'a> {
             }),
         };
         let (criteria, remainder) = (self.criteria, self.remainder);
-        let Begun { asked, with_table_alone } = self
+        let Begun { asked, with_other_choice } = self
             .begun
             .entry(std::ptr::from_ref(model))
             .or_insert_with(|| Begun::of(model, &law, criteria, remainder))
             .clone();
-        Start { model, law, criteria, begun: asked, with_table_alone }
+        Start { model, law, criteria, begun: asked, remainder, with_other_choice }
     }
 }
 
@@ -148,13 +159,13 @@ impl Begun {
             // It has no remainder.
             (LawChoice::Paper(settings), _) => Self {
                 asked: sum(&format!("paper {}", settings.threshold_percent)),
-                with_table_alone: None,
+                with_other_choice: None,
             },
             (LawChoice::Bayes(_), RemainderChoice::Learn) => {
-                Self { asked: sum("bayes"), with_table_alone: Some(sum(TABLE_ALONE)) }
+                Self { asked: sum("bayes"), with_other_choice: Some(sum(TABLE_ALONE)) }
             }
             (LawChoice::Bayes(_), RemainderChoice::Leave) => {
-                Self { asked: sum(TABLE_ALONE), with_table_alone: None }
+                Self { asked: sum(TABLE_ALONE), with_other_choice: Some(sum("bayes")) }
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Recorded flights against the book: what only a model shows.
 
-use flight::Severity;
+use flight::{FlightIdentity, Severity};
 
 use super::fuel::USED_AGAINST_FLOW;
 use super::{DataFinding, mean, slips};
@@ -79,6 +79,44 @@ pub fn decide_by_fuel_used(findings: &mut [DataFinding]) {
 pub fn is_as_far_off(found: &DataFinding, learnt: &[Option<Evaluated>]) -> bool {
     let errors = learnt.iter().flatten().filter_map(|segment| segment.error_percent);
     off_the_book(errors).is_some_and(|known| (found.size - known).abs() <= PLAUSIBLE_PERCENT)
+}
+
+/// How far a flight is off the book, %; `None` without a segment inside the table.
+#[must_use]
+pub fn flight_off_percent(evaluated: &[Option<Evaluated>]) -> Option<f64> {
+    off_the_book(evaluated.iter().flatten().filter_map(|segment| segment.error_percent))
+}
+
+/// The finding on one flight, so far off the book where its tail is known to be `known_percent` off; `None` where the two agree within
+/// [`PLAUSIBLE_PERCENT`].
+#[must_use]
+pub fn stray(
+    identity: &FlightIdentity,
+    evaluated: &[Option<Evaluated>],
+    known_percent: f64,
+) -> Option<DataFinding> {
+    let percent = flight_off_percent(evaluated)?;
+    if (percent - known_percent).abs() <= PLAUSIBLE_PERCENT {
+        return None;
+    }
+    let lift = mean(evaluated.iter().flatten().map(|segment| segment.lift_coefficient));
+    let beside = 100.0 * ((1.0 + percent / 100.0) / (1.0 + known_percent / 100.0) - 1.0);
+    let (likely_cause, remedy) = causes(beside, lift);
+    Some(DataFinding {
+        severity: Severity::Serious,
+        code: DEVIATION,
+        tail: identity.tail.clone(),
+        flight: identity.flight.clone(),
+        start: identity.start.to_string(),
+        size: percent,
+        unit: "%",
+        message: format!(
+            "recorded fuel flow is {percent:+.1} % off the book, other flights of the tail {known_percent:+.1} %; \
+             more than {PLAUSIBLE_PERCENT} % apart is rarely an aircraft"
+        ),
+        likely_cause: likely_cause.to_owned(),
+        remedy: remedy.to_owned(),
+    })
 }
 
 /// Mean deviation of recorded fuel flow from the book, %.

@@ -127,7 +127,12 @@ impl ModelFile {
         let mut applied = self.applied.clone();
         applied.push(record);
         let initial = self.initial.with_effects(layers_of(&applied))?;
-        Ok(Self { initial, applied, ..self.clone() })
+        let by_guide = self
+            .by_guide
+            .as_deref()
+            .map(|model| model.with_effects(layers_of(&applied)).map(Box::new))
+            .transpose()?;
+        Ok(Self { initial, by_guide, applied, ..self.clone() })
     }
 
     /// The tail that the model is of: whose diagnosis was applied to it, else whose flights it has learnt.

@@ -32,6 +32,8 @@ const EMPTY_FACTOR: &str = "\n            factor: []";
 
 /// The format of models without a baseline.
 const FIRST_FORMAT: u32 = 1;
+/// The format of a baseline that refers to the initial table.
+const FIRST_WITH_FACTORS: u32 = 3;
 /// The format from which on a baseline is one posterior.
 const FIRST_WITH_POSTERIOR: u32 = 2;
 
@@ -66,6 +68,9 @@ struct InitialText {
     drag_coefficient: Vec<f64>,
     /// 1 for a node outside the range of the guide.
     extrapolated: Vec<u8>,
+    /// By the rows of the guide in place of the polynomial through them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    drag_coefficient_of_guide: Option<Vec<f64>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -208,10 +213,14 @@ fn checksum_of(body: &str) -> String {
 
 fn document_of(model: &ModelFile) -> Document {
     let grid = model.grid();
-    // Format 2 differs in the baseline alone.
+    // Formats 2 and 3 differ in the baseline alone.
     let baseline = model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     Document {
-        format: if baseline.is_some() { FORMAT } else { FIRST_FORMAT },
+        format: match (&model.by_guide, baseline) {
+            (Some(_), _) => FORMAT,
+            (None, Some(_)) => FIRST_WITH_FACTORS,
+            (None, None) => FIRST_FORMAT,
+        },
         aircraft: model.initial.aircraft().file().clone(),
         guide: model.guide,
         polynomial: *model.initial.polynomial(),
@@ -222,6 +231,10 @@ fn document_of(model: &ModelFile) -> Document {
         initial: InitialText {
             drag_coefficient: model.initial.drag_table().values().to_vec(),
             extrapolated: flags_to_text(model.initial.extrapolated()),
+            drag_coefficient_of_guide: model
+                .by_guide
+                .as_deref()
+                .map(|model| model.drag_table().values().to_vec()),
         },
         settings: model.settings,
         learnt: model.learnt.as_ref().map(learnt_to_text),
@@ -277,22 +290,35 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         flags_from_text("initial.extrapolated", &document.initial.extrapolated, nodes)?,
     )
     .map_err(|error| value("initial", error))?;
+    let by_guide = match document.initial.drag_coefficient_of_guide {
+        None => None,
+        Some(values) => {
+            const FIELD: &str = "initial.drag_coefficient_of_guide";
+            let model = initial.with_drag_table(table(FIELD, values)?);
+            Some(model.map_err(|error| value(FIELD, error))?)
+        }
+    };
     let applied = document.effects.into_iter().map(AppliedRecord::try_from);
     let applied: Vec<AppliedRecord> =
         applied.collect::<Result<_, _>>().map_err(|error| value("effects", error))?;
-    let initial = ExtendedModel::new(initial, layers_of(&applied))
-        .map_err(|error| value("effects", error))?;
+    let with_effects = |model| {
+        ExtendedModel::new(model, layers_of(&applied)).map_err(|error| value("effects", error))
+    };
+    let initial = with_effects(initial)?;
+    let by_guide = by_guide.map(with_effects).transpose()?.map(Box::new);
     let settings = document.settings;
     let learnt = match document.learnt {
         None => None,
         Some(LearntText { tail, criteria, law, references, baseline, ledger }) => {
             let law = law_of(law, &initial, settings.bayes)?;
-            let baseline =
-                baseline.map(|record| baseline_of(record, &initial, settings.bayes)).transpose()?;
+            let reference = by_guide.as_deref().unwrap_or(&initial);
+            let baseline = baseline
+                .map(|record| baseline_of(record, reference, settings.bayes))
+                .transpose()?;
             Some(Learnt { tail, criteria, law, references, baseline, ledger })
         }
     };
-    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied })
+    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied, by_guide })
 }
 
 /// A baseline of its record, with what was believed of the initial table.

@@ -140,7 +140,7 @@ impl Predictor<'_> {
         (figures, refused)
     }
 
-    /// All that was learnt refers to the initial table; what else is stated of a point is by the learnt one, on the same grid.
+    /// All that was learnt refers to the model's reference; what else is stated of a point is by the learnt one, on the same grid.
     fn by_blocks(
         &self,
         whole: Option<&WholeModelOfLevels>,
@@ -152,7 +152,7 @@ impl Predictor<'_> {
             LevelQuestion::Means
         };
         let current = self.current.base();
-        let model = if whole.is_some() { self.model.initial.base() } else { current };
+        let model = if whole.is_some() { self.model.reference().base() } else { current };
         let mut figures = Figures::with_capacity(self.asked, self.is_whole(), flights.count());
         let mut unknown = Vec::new();
         model.level_blocks(flights, |from, block| {

@@ -36,6 +36,19 @@ pub(super) fn diagnose(
     .map_err(|error| Failure::BadArgument { argument: "--fleet", reason: error.to_string() })
 }
 
+/// Refuses to put the fleet's table in the place of another one, before anything is written.
+///
+/// # Errors
+/// A file that would be lost.
+pub(super) fn check(fleets: &[DiagnosedFleet], folder: &Path) -> Result<(), Failure> {
+    if fleets.is_empty() {
+        return Ok(());
+    }
+    columns::check(&fleet_table(fleets), &folder.join(TABLE))
+}
+
+const TABLE: &str = "fleet.csv";
+
 /// Writes `fleet.csv` and `fleet.html`; returns what to print.
 ///
 /// # Errors
@@ -48,7 +61,7 @@ pub(super) fn write(
     if fleets.is_empty() {
         return Ok(String::new());
     }
-    columns::write(&fleet_table(fleets), Some(&folder.join("fleet.csv")))?;
+    columns::write(&fleet_table(fleets), Some(&folder.join(TABLE)))?;
     let html = page::fleet_diagnosis(run);
     write_atomically(&folder.join("fleet.html"), neutral(&html).as_bytes())?;
     let texts: Vec<String> = fleets.iter().map(fleet_text).collect();

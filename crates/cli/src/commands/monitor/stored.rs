@@ -44,6 +44,10 @@ impl Tails {
     /// # Errors
     /// A state that cannot be read.
     pub(crate) fn of(folder: &Path) -> Result<Self, Failure> {
+        if folder.is_file() {
+            let reason = "it is a file, where a folder of `adapt` was expected";
+            return Err(Failure::unreadable(folder, reason));
+        }
         let state = state::read(folder)?;
         if let Some(state) = &state {
             warn_of_strangers(folder, state);

@@ -8,7 +8,7 @@ use pipeline::learning::FlightKey;
 use pipeline::learnt_flights::KnownFlight;
 use pipeline::model_file::ModelFile;
 
-use crate::commands::adapt::Run;
+use crate::commands::adapt::{MORE_THAN_TABLE, Run};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::folder::Salvage;
 use crate::reading::Buffers;
@@ -91,8 +91,7 @@ impl Run<'_> {
             return Err(Failure::BegunOtherwise {
                 folder: show(&self.arguments.output),
                 what: "setting",
-                difference: "more than the table was learnt, which --no-remainder would drop"
-                    .to_owned(),
+                difference: MORE_THAN_TABLE.to_owned(),
             });
         }
         Ok(())

@@ -1,0 +1,161 @@
+//! What commands leave alone: files that they did not make, what a folder has learnt, and flights beside one that is wrong.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use crate::check::unit;
+use crate::support::{Ran, adapt, bytes_below, cruisefit, fixture, init, initial_model};
+
+fn report(flight: u32) -> PathBuf {
+    fixture(&format!("reports/{flight:04}.txt"))
+}
+
+fn run<'a>(words: &[&'a (impl AsRef<OsStr> + ?Sized + 'a)]) -> Ran {
+    cruisefit(words)
+}
+
+fn taught(scratch: &Path, reports: &[PathBuf]) -> (PathBuf, PathBuf) {
+    let (model, output) = (initial_model(scratch), scratch.join("out"));
+    adapt(&model, &output, reports, &[]).expect(0);
+    (model, output)
+}
+
+/// A flow in another unit made the flights after it wait, and was learnt itself once these were many enough.
+#[test]
+fn one_flight_in_another_unit_costs_itself() {
+    let scratch = tempfile::tempdir().unwrap();
+    let known: Vec<PathBuf> = (1..=3).map(report).collect();
+    let (model, output) = taught(scratch.path(), &known);
+    let text = std::fs::read_to_string(report(4)).unwrap();
+    let wrong = scratch.path().join("0004.txt");
+    std::fs::write(&wrong, unit(&text, "WF", "kg/h")).unwrap();
+    for night in 5..=8 {
+        let mut reports = known.clone();
+        reports.push(wrong.clone());
+        reports.extend((5..=night).map(report));
+        let ran = adapt(&model, &output, &reports, &[]).expect(1);
+        ran.says("0004.txt").says("other flights of the tail");
+        let learnt = std::fs::read_to_string(output.join("flights/SIM-01.csv")).unwrap();
+        assert_eq!(learnt.lines().count() as u32, 3 + (night - 4) + 1, "{learnt}");
+    }
+    // The same flights at once, in whatever split of nights.
+    let at_once = scratch.path().join("at_once");
+    let mut all: Vec<PathBuf> = (1..=3).chain(5..=8).map(report).collect();
+    all.push(wrong);
+    adapt(&model, &at_once, &all, &[]).expect(1).says("other flights of the tail");
+    let model_of = |folder: &Path| std::fs::read(folder.join("models/SIM-01.ron")).unwrap();
+    assert!(model_of(&output) == model_of(&at_once), "the split of nights shows");
+}
+
+#[test]
+fn what_a_folder_has_learnt_is_replaced_by_adapt_alone() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = taught(scratch.path(), &[report(1), report(2)]);
+    let learnt = output.join("models/SIM-01.ron");
+    let before = bytes_below(&output);
+    let said = "part of what a folder has learnt";
+    let (force, to) = (OsStr::new("--force"), OsStr::new("-o"));
+    let parts = [learnt.as_os_str(), model.as_os_str()];
+    let words = [OsStr::new("merge"), parts[0], parts[0], to, parts[0], force];
+    cruisefit(&words).expect(2);
+    init(&output.join("STATE.ron"), &[force]).expect(2).says(said);
+    init(&learnt, &[force]).expect(2).says(said);
+    let later = report(3);
+    let words = [
+        OsStr::new("diagnose"),
+        later.as_os_str(),
+        OsStr::new("--model"),
+        model.as_os_str(),
+        to,
+        scratch.path().as_os_str(),
+        OsStr::new("--apply"),
+        output.join("models").as_os_str(),
+        OsStr::new("--effects"),
+        OsStr::new("zero_lift_drag"),
+    ]
+    .map(OsStr::to_owned);
+    let _ = cruisefit(&words);
+    assert_eq!(bytes_below(&output), before);
+}
+
+/// The flag of one early night, before a remainder could be learnt, decided of the tail for good.
+#[test]
+fn a_folder_that_is_to_learn_more_than_the_table_goes_on_so() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = taught(scratch.path(), &[report(1), report(2)]);
+    let before = bytes_below(&output);
+    adapt(&model, &output, &[report(3)], &["--no-remainder"])
+        .expect(2)
+        .says("more than the table was learnt, which --no-remainder would drop");
+    assert_eq!(bytes_below(&output), before);
+}
+
+#[test]
+fn reports_are_not_moved_away_with_the_folder_that_they_lie_in() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let reports = scratch.path().join("reports");
+    std::fs::create_dir(&reports).unwrap();
+    std::fs::copy(report(1), reports.join("0001.txt")).unwrap();
+    adapt(&model, &reports, std::slice::from_ref(&reports), &["--restart"])
+        .expect(2)
+        .says("would be moved out of the way");
+    assert!(reports.join("0001.txt").exists());
+    adapt(&model, &reports, std::slice::from_ref(&reports), &[]).expect(0);
+}
+
+/// JSON and page of a new diagnosis beside the table of another program: two results in one folder.
+#[test]
+fn of_several_results_all_are_written_or_none() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("diagnosis");
+    std::fs::create_dir(&output).unwrap();
+    std::fs::write(output.join("gaps.csv"), "owner,notes\nme,mine\n").unwrap();
+    let before = bytes_below(&output);
+    let reports = fixture("reports");
+    let words = ["diagnose", reports.to_str().unwrap(), "--model", model.to_str().unwrap(), "-o"];
+    let words = [&words[..], &[output.to_str().unwrap()]].concat();
+    run(&words).expect(2).says("gaps.csv");
+    assert_eq!(bytes_below(&output), before);
+}
+
+/// A run that was killed between its commit and the last move leaves the new model in the waiting folder.
+#[test]
+fn a_model_named_by_its_path_is_that_of_the_state() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = taught(scratch.path(), &[report(1)]);
+    let old = std::fs::read(output.join("models/SIM-01.ron")).unwrap();
+    adapt(&model, &output, &[report(2)], &[]).expect(0);
+    let generation = std::fs::read_to_string(output.join("STATE.ron")).unwrap();
+    let generation: String = generation
+        .split_once("generation:")
+        .unwrap()
+        .1
+        .trim_start()
+        .chars()
+        .take_while(char::is_ascii_digit)
+        .collect();
+    let waiting = output.join(format!(".cruisefit-next-{generation}"));
+    std::fs::create_dir_all(waiting.join("models")).unwrap();
+    std::fs::rename(output.join("models/SIM-01.ron"), waiting.join("models/SIM-01.ron")).unwrap();
+    std::fs::write(output.join("models/SIM-01.ron"), old).unwrap();
+    let path = output.join("models/SIM-01.ron");
+    run(&["show", path.to_str().unwrap()]).expect(0).prints("2 flights");
+}
+
+#[test]
+fn messages_name_what_was_found_and_expected() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (model, output) = taught(scratch.path(), &[report(1)]);
+    adapt(&model, &model, &[report(1)], &[]).expect(2).says("a folder was expected");
+    let state = output.join("STATE.ron");
+    run(&["monitor", state.to_str().unwrap()]).expect(2).says("a folder of `adapt` was expected");
+    run(&["mapping", output.to_str().unwrap()]).expect(2).says("a file was expected");
+    let first = report(1);
+    run(&["mapping", first.to_str().unwrap()]).expect(2).says("read without a mapping");
+    let words = ["optimum", "--model", model.to_str().unwrap(), "--isa-deviation", "-10,10"];
+    run(&words).expect(0);
+    let words = ["optimum", "--model", model.to_str().unwrap(), "--cost-index", "-5"];
+    run(&words).expect(2).says("0 or more");
+}

@@ -1,0 +1,123 @@
+//! What a taught model does not know beyond what its flights flew, as columns of the nuisance.
+
+use crate::baseline::Baseline;
+use crate::residuals::rows::SegmentRow;
+
+/// Columns of one variable on one side of what was flown.
+const COLUMNS: usize = 3;
+
+/// The smooth functions of a baseline beyond what was flown, as far as the segments at hand go: there each is an integrated Wiener
+/// process, of which three places, evenly up to the farthest segment, are columns.
+///
+/// ```text
+/// cov(a, b) = σ²·g·a²·(3b − a)/2,  a ≤ b lengths beyond,  g the growth of [baseline.1];  φ(b) = L⁻¹·cov(Z, b),  LLᵀ = cov(Z, Z)
+/// ```
+///
+/// Without them a healthy aircraft that flies faster than it was taught is told by whatever effect bends most there.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Beyond {
+    sides: Vec<Side>,
+}
+
+/// One smooth function on one side.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    smooth: usize,
+    is_above: bool,
+    /// Lengths to the farthest segment.
+    farthest: f64,
+    /// Standard deviation there.
+    deviation: f64,
+}
+
+impl Beyond {
+    /// Of the segments at hand.
+    pub(crate) fn of(baseline: Option<&Baseline>, segments: &[SegmentRow]) -> Self {
+        let Some(baseline) = baseline else { return Self::default() };
+        let mut farthest = vec![[0.0_f64; 2]; baseline.smooth_functions()];
+        for row in segments {
+            for (far, distance) in farthest.iter_mut().zip(baseline.beyond(&row.response)) {
+                let side = usize::from(distance > 0.0);
+                far[side] = far[side].max(distance.abs());
+            }
+        }
+        let sides = farthest.iter().enumerate().flat_map(|(smooth, far)| {
+            far.iter().zip([false, true]).filter(|(far, _)| **far > 0.0).map(
+                move |(&farthest, is_above)| Side {
+                    smooth,
+                    is_above,
+                    farthest,
+                    deviation: (baseline.growth_beyond(smooth) * farthest.powi(3)).sqrt(),
+                },
+            )
+        });
+        Self { sides: sides.collect() }
+    }
+
+    /// Number of columns.
+    pub(crate) const fn len(&self) -> usize {
+        COLUMNS * self.sides.len()
+    }
+
+    /// Writes the columns of a segment, on fuel flow, each of unit prior variance.
+    pub(crate) fn write(&self, baseline: &Baseline, row: &SegmentRow, into: &mut [f64]) {
+        let distances: Vec<f64> = baseline.beyond(&row.response).collect();
+        for (side, terms) in self.sides.iter().zip(into.chunks_exact_mut(COLUMNS)) {
+            let distance = distances[side.smooth];
+            let is_there = distance != 0.0 && (distance > 0.0) == side.is_above;
+            let share = if is_there { distance.abs() / side.farthest } else { 0.0 };
+            for (term, value) in terms.iter_mut().zip(terms_at(share)) {
+                *term = side.deviation * value;
+            }
+        }
+    }
+}
+
+/// Covariance of an integrated Wiener process, 1 at 1.
+fn covariance(one: f64, other: f64) -> f64 {
+    let (a, b) = if one < other { (one, other) } else { (other, one) };
+    0.5 * a * a * (3.0 * b - a)
+}
+
+/// The process at a share of the way, by three independent variables.
+fn terms_at(share: f64) -> [f64; COLUMNS] {
+    let place = |k: usize| (k + 1) as f64 / COLUMNS as f64;
+    let mut root = [[0.0; COLUMNS]; COLUMNS];
+    let mut terms = [0.0; COLUMNS];
+    for k in 0..COLUMNS {
+        let solve = |at: f64, root: &[[f64; COLUMNS]; COLUMNS], row: &[f64; COLUMNS]| {
+            let held: f64 = (0..k).map(|l| root[k][l] * row[l]).sum();
+            covariance(place(k), at) - held
+        };
+        for l in 0..k {
+            let held: f64 = (0..l).map(|m| root[k][m] * root[l][m]).sum();
+            root[k][l] = (covariance(place(k), place(l)) - held) / root[l][l];
+        }
+        let row = root[k];
+        root[k][k] = solve(place(k), &root, &row).sqrt();
+        terms[k] = solve(share, &root, &terms) / root[k][k];
+    }
+    terms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The oracle is the process itself: its variance is the cube of the way at the three places, and between them what three places
+    /// cannot hold is small; before the first segment beyond there is nothing.
+    #[test]
+    fn three_places_hold_the_process() {
+        for step in 0..=100 {
+            let share = f64::from(step) / 100.0;
+            let held: f64 = terms_at(share).iter().map(|term| term * term).sum();
+            assert!(held <= share.powi(3) + 1e-12, "{share}: {held}");
+            assert!(share.powi(3) - held < 0.003, "{share}: {held}");
+        }
+        for (one, other) in [(1.0 / 3.0, 1.0), (2.0 / 3.0, 0.5), (1.0, 0.8)] {
+            let product: f64 = terms_at(one).iter().zip(terms_at(other)).map(|(a, b)| a * b).sum();
+            assert!((product - covariance(one, other)).abs() < 1e-9, "{one} {other}: {product}");
+        }
+        assert_eq!(terms_at(0.0), [0.0; COLUMNS]);
+    }
+}

@@ -1,0 +1,80 @@
+//! What a guide's rows say of drag beside the polynomial through them.
+
+use std::sync::Arc;
+
+use adapt::bayes::{BayesSettings, BayesState, Posterior, Search, SettingValues, tune};
+use flight::{Observation, ObservationVariance, Timestamp};
+use lut::{Outside, Table};
+use perf_model::initial::observe_guide_point;
+use perf_model::{Guide, InitialModel, PerformanceModel};
+
+use super::GuideRecord;
+
+/// The model with the drag of its guide's rows in the table, in place of the polynomial's; `None` where the rows do not make a table.
+///
+/// ```text
+/// CD_guide = CD_polynomial·(1 + x),   x by law bayes from the rows, each a flight of one segment          [bayes.14]
+/// ```
+///
+/// Six coefficients cannot hold a drag rise: beside the polynomial, a guide's own rows may be several per cent off, and most where
+/// flights go beyond the Mach numbers that have been flown. Beyond the guide's range the nearest x within it holds.
+pub(super) fn with_drag_of_guide(
+    initial: &InitialModel,
+    guide: &Guide,
+    range: &GuideRecord,
+) -> Option<PerformanceModel> {
+    let model = &initial.model;
+    let mut rows = Vec::with_capacity(guide.points().len());
+    for point in guide.points() {
+        let row = observe_guide_point(model.aircraft(), point).ok()?;
+        let total_kg_s = point.fuel_flow_total.to_kilograms_per_second();
+        rows.push(vec![Observation {
+            time: Timestamp::UNIX_EPOCH,
+            lift_coefficient: row.lift_coefficient,
+            mach: row.mach,
+            drag_coefficient: row.drag_coefficient,
+            fuel_flow_total_kg_s: total_kg_s,
+            fuel_flow_per_drag_coefficient_kg_s: total_kg_s / row.drag_coefficient,
+            variance: ObservationVariance { segment: 0.0, flight: 0.0 },
+        }]);
+    }
+    let printed = SettingValues {
+        student_degrees_of_freedom: NO_OUTLIERS,
+        ..*BayesSettings::physical_2026().values()
+    };
+    let start = BayesSettings::new(printed).ok()?;
+    let tuned = tune(model.drag_table(), start, &rows, &SEARCH).ok()?;
+    let mut state = BayesState::new(model.drag_table(), tuned.settings).ok()?;
+    for row in &rows {
+        let _ = state.learn_flight(row);
+    }
+    let table = table_within(&state.solve().ok()?, model.drag_table(), range)?;
+    model.with_drag_table(table).ok()
+}
+
+/// How the rows of a guide tell their own noise, and how much drag bends beside the polynomial: a drag rise sets in more sharply than
+/// an aircraft departs from its guide.
+const SEARCH: Search = Search {
+    largest_factor: 32.0,
+    smallest_factor: 1.4,
+    maximum_evaluations: 120,
+    prior_factor: 4.0,
+    with_correction: true,
+};
+/// Degrees of freedom of rows that are printed and not measured: none is weighed down.
+const NO_OUTLIERS: f64 = 1e6;
+
+/// A table with the corrections of a posterior, beyond a guide's range those of its edge.
+fn table_within(posterior: &Posterior, initial: &Table, range: &GuideRecord) -> Option<Table> {
+    let grid = initial.grid();
+    let values = initial.values().iter().enumerate().map(|(node, drag_coefficient)| {
+        let (lift_coefficient, mach) = grid.coordinates(node);
+        let cell = grid.locate(
+            lift_coefficient.clamp(range.lift_coefficient.0, range.lift_coefficient.1),
+            mach.clamp(range.mach.0, range.mach.1),
+            Outside::Hold,
+        );
+        Some(drag_coefficient * (1.0 + posterior.correction_at(&cell.ok()?)))
+    });
+    Table::new(Arc::clone(grid), values.collect::<Option<Vec<f64>>>()?).ok()
+}
