@@ -92,6 +92,9 @@ deciding_numbers! {
         UNPROVEN_SHARE: f64 = 0.5, "",
             "share of its probability that a name keeps where the interval of its closure on unseen flights holds zero",
             OurChoice "A name that other flights do not bear out is not more probable than not.";
+        CLOSES: f64 = 0.9, "of the explainable gap",
+            "upper end of a name's closure on unseen flights below which a more probable cause outside the library is the verdict",
+            OurChoice "Nine tenths: what the library names closes 0.94 and more in whatever form, what it lacks a quarter.";
         LEAST_OF_A_TABLE: f64 = 0.5, "of the explainable gap",
             "lower end of the closure by a table fitted to other flights below which a guide's drag is not what is wrong",
             OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.95 and more; shuffled fuel flows 0 to 0.3.";

@@ -100,7 +100,7 @@ fn judged<'a>(flights: impl Iterator<Item = (Book<'a>, &'a FlightRead)>) -> Vec<
         let strays = strays(&book, &flights);
         let rest = flights.iter().enumerate().filter(|(place, _)| !strays.contains_key(place));
         let segments: Vec<Option<Evaluated>> =
-            rest.flat_map(|(_, (_, evaluated))| evaluated.iter().cloned()).collect();
+            rest.flat_map(|(_, (_, evaluated))| evaluated.iter().copied()).collect();
         let found = book::against_book(tail, &segments);
         // All that was learnt is evaluated only where something is off.
         if !found.is_empty() {

@@ -71,6 +71,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let mut starts = Starts::new(law, &arguments.reports.criteria.name, remainder_of(arguments));
     let tails = choose(by_model, &mut starts, &folder, &mut refused);
     let tails = begun_alike(tails, arguments, &folder, &mut refused)?;
+    warn_of_other_books(&tails, &folder);
     let mut all: BTreeSet<String> = folder.tails();
     all.extend(tails.keys().cloned());
     crate::folder::names::check(&arguments.output, &all)?;
@@ -221,6 +222,31 @@ fn begun_alike<'a>(
         refuse(heads, &format!("tail {tail} was begun with another {what}: {difference}"));
     }
     Ok(alike)
+}
+
+/// Names a new tail whose initial model is another one than that of the tails of its type: what `monitor` compares of them is then
+/// against two books.
+fn warn_of_other_books(tails: &Chosen<'_>, folder: &Folder) {
+    let mut told = BTreeSet::new();
+    for (tail, (start, _)) in tails {
+        let is_known = |known: &String| {
+            known == tail || folder.state_of(known).is_some_and(|state| state.begun == start.begun)
+        };
+        if folder.tails().iter().any(is_known) || !told.insert(start.begun.clone()) {
+            continue;
+        }
+        let type_of = |model: &ModelFile| model.initial.aircraft().type_code().to_owned();
+        let of_type = folder.tails().into_iter().find_map(|known| {
+            let stored = folder.load(&known).ok()?;
+            (type_of(&stored.model) == type_of(start.model)).then_some((known, stored.model))
+        });
+        let Some((known, model)) = of_type else { continue };
+        if let Ok(Some((what, difference))) = start.difference(tail, &model) {
+            tracing::warn!(
+                "tail {tail} begins with another {what} than tail {known} of its type ({difference}): each is compared with its own"
+            );
+        }
+    }
 }
 
 /// How a tail that the folder holds is not what its reports would go on with.

@@ -36,7 +36,7 @@ fn one_flight_in_another_unit_costs_itself() {
         let ran = adapt(&model, &output, &reports, &[]).expect(1);
         ran.says("0004.txt").says("other flights of the tail");
         let learnt = std::fs::read_to_string(output.join("flights/SIM-01.csv")).unwrap();
-        assert_eq!(learnt.lines().count() as u32, 3 + (night - 4) + 1, "{learnt}");
+        assert_eq!(learnt.lines().count(), 1 + 3 + (5..=night).count(), "{learnt}");
     }
     // The same flights at once, in whatever split of nights.
     let at_once = scratch.path().join("at_once");
@@ -88,6 +88,35 @@ fn a_folder_that_is_to_learn_more_than_the_table_goes_on_so() {
         .expect(2)
         .says("more than the table was learnt, which --no-remainder would drop");
     assert_eq!(bytes_below(&output), before);
+}
+
+/// A revised book makes every new tail look better or worse than the others by the revision.
+#[test]
+fn a_new_tail_with_another_book_is_named() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (_, output) = taught(scratch.path(), &[report(1), report(2)]);
+    let text = std::fs::read_to_string(fixture("guide.csv")).unwrap();
+    let guide = scratch.path().join("guide.csv");
+    // The last row left out.
+    std::fs::write(&guide, text.trim_end().rsplit_once('\n').unwrap().0).unwrap();
+    let revised = scratch.path().join("REVISED.ron");
+    let aircraft = fixture("AIRCRAFT.ron");
+    let words = [
+        OsStr::new("init"),
+        OsStr::new("--aircraft"),
+        aircraft.as_os_str(),
+        OsStr::new("--guide"),
+        guide.as_os_str(),
+        OsStr::new("-o"),
+        revised.as_os_str(),
+    ];
+    cruisefit(&words).expect(0);
+    let other = scratch.path().join("other.txt");
+    let report = std::fs::read_to_string(report(3)).unwrap();
+    std::fs::write(&other, report.replace("SIM-01", "SIM-02")).unwrap();
+    adapt(&revised, &output, &[other], &[])
+        .expect(0)
+        .says("tail SIM-02 begins with another initial model than tail SIM-01 of its type");
 }
 
 #[test]

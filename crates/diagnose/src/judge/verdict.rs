@@ -18,7 +18,8 @@ use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::thresholds::{
-    CREDIBLE, LEVEL_LIKE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY, SIZE_ALONE,
+    CLOSES, CREDIBLE, LEVEL_LIKE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY,
+    SIZE_ALONE,
 };
 
 /// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
@@ -111,6 +112,7 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
     let closed = closed(unseen, own);
     if outside.probability > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
+        || is_rather_outside(outside, top, unseen)
     {
         return Verdict::OutsideLibrary(Unexplained {
             probability: outside.probability.max(1.0 - named),
@@ -136,6 +138,13 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
         }
     }
     Verdict::Effects(found)
+}
+
+/// Whether something outside the library is more probable than the leading effect, which surely leaves more than a tenth of the gap of
+/// flights that it was not fitted to.
+fn is_rather_outside(outside: &Outside, top: &Posterior, unseen: Option<&Shrinkage>) -> bool {
+    let leaves = unseen.and_then(Shrinkage::closure).is_some_and(|(_, [_, most])| most < CLOSES);
+    leaves && outside.probability > top.probability * (1.0 - outside.probability)
 }
 
 /// The gap of the leading effect where it is named and no guide's table is off, and the variables that drive it: each with the

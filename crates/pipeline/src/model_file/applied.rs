@@ -132,7 +132,7 @@ impl ModelFile {
             .as_deref()
             .map(|model| model.with_effects(layers_of(&applied)).map(Box::new))
             .transpose()?;
-        Ok(Self { initial, by_guide, applied, ..self.clone() })
+        Ok(Self { initial, applied, by_guide, ..self.clone() })
     }
 
     /// The tail that the model is of: whose diagnosis was applied to it, else whose flights it has learnt.

@@ -10,7 +10,7 @@ const COLUMNS: usize = 3;
 /// process, of which three places, evenly up to the farthest segment, are columns.
 ///
 /// ```text
-/// cov(a, b) = σ²·g·a²·(3b − a)/2,  a ≤ b lengths beyond,  g the growth of [baseline.1];  φ(b) = L⁻¹·cov(Z, b),  LLᵀ = cov(Z, Z)
+/// cov(a, b) = σ²·g·a²·(3b − a)/2,  a ≤ b lengths beyond,  g the growth of [baseline.1];  φ(b) = L⁻¹·cov(Z, b),  LLᵀ = cov(Z, Z)  [diagnosis.63]
 /// ```
 ///
 /// Without them a healthy aircraft that flies faster than it was taught is told by whatever effect bends most there.
