@@ -236,7 +236,9 @@ impl ModelFile {
         };
         let by_guide = guide_drag::with_drag_of_guide(initial, guide, &record);
         if by_guide.is_none() {
-            tracing::warn!("the guide's rows make no drag table of their own: what is learnt refers to the polynomial");
+            tracing::warn!(
+                "the guide's rows make no drag table of their own: what is learnt refers to the polynomial"
+            );
         }
         Self {
             initial: initial.model.clone().into(),
