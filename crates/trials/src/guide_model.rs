@@ -46,21 +46,26 @@ mod tests {
     use simulate::Scatter;
     use units::Mach;
 
+    /// A case of an aircraft without an effect, and the model that `init` makes of its guide.
+    fn model_of(aircraft: &str, seed: u64) -> (DrawnCase, ModelFile) {
+        let plan = format!(
+            "(seed: {seed}, aircraft: Preset({aircraft}), parts: [(denied: guide, background: clean, kind: null, repeats: 1)])"
+        );
+        let plan = TrialPlan::from_ron(&plan).unwrap();
+        let drawn = DrawnCase::draw(&plan, &plan.cases(2).remove(0)).unwrap();
+        let sensors = drawn.flown().plan().sensors.sensors();
+        let stated = stated_sensors(&sensors, &Scatter::default(), drawn.aircraft());
+        let model = model_of_guide(&drawn, stated).unwrap();
+        (drawn, model)
+    }
+
     /// The oracle is the simulator's drag times the error that was drawn: below the rise the polynomial is near it, and off by what
     /// a polynomial loses of the rise.
     #[test]
     fn the_model_of_a_guide_is_the_truth_with_its_error_and_without_its_rise() {
         for aircraft in ["citation_x", "a320", "regional_jet"] {
-            let plan = format!(
-                "(seed: 3, aircraft: Preset({aircraft}), parts: [(denied: guide, background: clean, kind: null, repeats: 1)])"
-            );
-            let plan = TrialPlan::from_ron(&plan).unwrap();
-            let spec = plan.cases(2).remove(0);
-            let drawn = DrawnCase::draw(&plan, &spec).unwrap();
+            let (drawn, model) = model_of(aircraft, 3);
             let truth = drawn.aircraft();
-            let sensors = drawn.flown().plan().sensors.sensors();
-            let stated = stated_sensors(&sensors, &Scatter::default(), truth);
-            let model = model_of_guide(&drawn, stated).unwrap();
             let at = truth.reference_conditions();
             let (lift, mach) = (0.40, 0.65);
             let off = drawn.book_error().at(mach, lift);
@@ -71,20 +76,14 @@ mod tests {
             assert!(model.guide.residual_rms > 1e-5, "{aircraft}: {:?}", model.guide);
         }
     }
+
     /// The oracle is the simulator's drag times the error that was drawn, at the nodes within the guide's range: what flights are held
     /// against has the drag rise that the polynomial lost.
     #[test]
     fn what_is_learnt_refers_to_the_drag_of_the_guides_rows() {
         for aircraft in ["citation_x", "a320", "regional_jet"] {
-            let plan = format!(
-                "(seed: 4, aircraft: Preset({aircraft}), parts: [(denied: guide, background: clean, kind: null, repeats: 1)])"
-            );
-            let plan = TrialPlan::from_ron(&plan).unwrap();
-            let drawn = DrawnCase::draw(&plan, &plan.cases(2).remove(0)).unwrap();
+            let (drawn, model) = model_of(aircraft, 4);
             let truth = drawn.aircraft();
-            let sensors = drawn.flown().plan().sensors.sensors();
-            let stated = stated_sensors(&sensors, &Scatter::default(), truth);
-            let model = model_of_guide(&drawn, stated).unwrap();
             let at = truth.reference_conditions();
             let rms_over_guide = |table: &lut::Table| {
                 let grid = table.grid();

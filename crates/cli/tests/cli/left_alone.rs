@@ -55,26 +55,28 @@ fn what_a_folder_has_learnt_is_replaced_by_adapt_alone() {
     let before = bytes_below(&output);
     let said = "part of what a folder has learnt";
     let (force, to) = (OsStr::new("--force"), OsStr::new("-o"));
-    let parts = [learnt.as_os_str(), model.as_os_str()];
-    let words = [OsStr::new("merge"), parts[0], parts[0], to, parts[0], force];
-    cruisefit(&words).expect(2);
+    let other = scratch.path().join("other");
+    adapt(&model, &other, &[report(3)], &[]).expect(0);
+    let second = other.join("models/SIM-01.ron");
+    let words = [OsStr::new("merge"), learnt.as_os_str(), second.as_os_str(), to];
+    cruisefit(&[&words[..], &[learnt.as_os_str(), force]].concat()).expect(2).says(said);
     init(&output.join("STATE.ron"), &[force]).expect(2).says(said);
     init(&learnt, &[force]).expect(2).says(said);
-    let later = report(3);
-    let words = [
-        OsStr::new("diagnose"),
-        later.as_os_str(),
-        OsStr::new("--model"),
-        model.as_os_str(),
-        to,
-        scratch.path().as_os_str(),
-        OsStr::new("--apply"),
-        output.join("models").as_os_str(),
-        OsStr::new("--effects"),
-        OsStr::new("zero_lift_drag"),
-    ]
-    .map(OsStr::to_owned);
-    let _ = cruisefit(&words);
+    // Of a table that is exact the named effect is applied.
+    let aircraft = scratch.path().join("AIRCRAFT.ron");
+    let text = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
+    let exact = text.replacen("    table:", "    table_uncertainty_percent: 0,\n    table:", 1);
+    std::fs::write(&aircraft, exact).unwrap();
+    let exact = scratch.path().join("EXACT.ron");
+    let (guide, reports) = (fixture("guide.csv"), fixture("reports"));
+    let [guide, reports, aircraft, exact] =
+        [&guide, &reports, &aircraft, &exact].map(|path| path.to_str().unwrap());
+    run(&["init", "--aircraft", aircraft, "--guide", guide, "-o", exact]).expect(0);
+    let models = output.join("models");
+    let found = scratch.path().join("found");
+    let words = ["diagnose", reports, "--model", exact, "-o", found.to_str().unwrap(), "--apply"];
+    let effects = [models.to_str().unwrap(), "--effects", "zero_lift_drag"];
+    run(&[&words[..], &effects].concat()).expect(2).says(said);
     assert_eq!(bytes_below(&output), before);
 }
 
