@@ -21,6 +21,7 @@ use crate::judge::table::is_table_off;
 use crate::judge::verdict::{Findings, advisor, level_like, named_gap, verdict};
 use crate::library::Library;
 use crate::library::dates::{DateGrid, is_dated};
+use crate::library::engine_changes::engines_change;
 use crate::output::addition::Addition;
 use crate::output::form::{ActsOn, FoundForm};
 use crate::output::note::{LeftOutReason, Note};
@@ -68,8 +69,11 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
             input.flights,
             input.reference(),
             |points, engines, starts| {
-                let dates =
-                    kept.unwrap_or_else(|| DateGrid::coarse(starts, input.events_s, right_at_s));
+                let dates = kept.unwrap_or_else(|| {
+                    let of_engines = engines && engines_change(input.flights);
+                    let alone = if of_engines { model.aircraft().engines() } else { 0 };
+                    DateGrid::coarse(starts, input.events_s, right_at_s, alone)
+                });
                 Library::new(&model, points, engines, dates, chosen)
             },
         );
@@ -274,7 +278,8 @@ fn conclude(
     let real = exceeds || is_real(analysis, &outside);
     let unseen =
         (!options.skip_closure && real).then(|| nested(problem, exceeds, scale, options.seed));
-    let places = (!options.skip_where).then(|| find(system, analysis, scale, options.seed));
+    let places =
+        (!options.skip_where).then(|| find(system, analysis, (scale, own.floor()), options.seed));
     let asked = DetectionInput {
         analysis,
         distances: &distances,
@@ -285,7 +290,7 @@ fn conclude(
         noise_scale: scale,
         is_real: real,
         exceeds_uncertainty: exceeds,
-        lies_at_an_engine: places.as_ref().is_some_and(FoundPlaces::name_an_engine),
+        places: places.as_ref(),
     };
     let Detection { detected, table, smooth_term, forms } = detect(problem, &asked, &mut outside);
     gap.detected = detected;

@@ -13,6 +13,7 @@ use crate::priors::{
 use crate::thresholds::RECORDED_SHARE;
 
 pub(crate) mod dates;
+pub(crate) mod engine_changes;
 pub(crate) mod forms;
 
 /// One column: an effect at one value of its hidden parameter.

@@ -47,7 +47,7 @@ fn with_system(flights: &[Vec<Segment>], check: impl FnOnce(&Problem<'_>)) {
     let references = references_of(&model, model.drag_table(), &records).unwrap();
     let effects = EffectModel::new(&model, model.drag_table(), references).unwrap();
     let library_of = |points: &[EffectPoint], engines: bool, starts: &[f64]| {
-        let dates = DateGrid::coarse(starts, &[], None);
+        let dates = DateGrid::coarse(starts, &[], None, 0);
         Library::new(&effects, points, engines, dates, |_| true)
     };
     let (data, library) =

@@ -202,6 +202,9 @@ deciding_numbers! {
         DECK_DEVIATION: f64 = 0.02, "of N2",
             "prior standard deviation of a deck coefficient about its least-squares value",
             OurChoice "Wide: least squares over the same flights is only a start.";
+        ENGINES_APART_PERCENT_PER_YEAR: f64 = 0.8, "% a year",
+            "prior standard deviation of how fast two engines drift apart, where they do not stay as they are",
+            OurChoice "As much as an engine usually ages: one wears, the other is newer.";
         BLEED_DEVIATION: f64 = 0.005, "of N2",
             "prior standard deviation of what anti-ice bleed changes N2 by, thrust the same",
             OurChoice "Bleed turns the core faster or slower by some tenths of a per cent, by the engine's control; a deck has no variable for it.";

@@ -95,6 +95,15 @@ deciding_numbers! {
         CLOSES: f64 = 0.9, "of the explainable gap",
             "upper end of a name's closure on unseen flights below which a more probable cause outside the library is the verdict",
             OurChoice "Nine tenths: what the library names closes 0.94 and more in whatever form, what it lacks a quarter.";
+        ENGINE_CHANGES: f64 = 4.5, "standard deviations",
+            "difference of what an engine burns beside the others, before and after some date, above which steps of single engines are tried",
+            OurChoice "Where nothing changes, one tail in a hundred has so much between some of a hundred dates.";
+        SURE_P_VALUE: f64 = 1e-12, "",
+            "p-value of the gap below which it is told, whether or not a name fits it",
+            OurChoice "Of 233 taught and healthy fleets of two foreign simulators the smallest was 1e-9; of 48 that were ill and not told, 1e-10 to 1e-314.";
+        REFUTES_SCATTER: f64 = 0.01, "",
+            "largest p-value of a place beside which scatter from flight to flight is not borne out",
+            OurChoice "A place that one clean fleet in a hundred shows by chance; scatter has none.";
         LEAST_OF_A_TABLE: f64 = 0.5, "of the explainable gap",
             "lower end of the closure by a table fitted to other flights below which a guide's drag is not what is wrong",
             OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.95 and more; shuffled fuel flows 0 to 0.3.";

@@ -63,7 +63,11 @@ pub(crate) fn recorded_fuel_flow(
     let mut each = [0.0; MAXIMUM_ENGINES];
     let mut total = 0.0;
     for (engine, flow) in each.iter_mut().enumerate().take(engines) {
-        let factor_of = |terms: &Terms| 1.0 + terms.tsfc_engine[engine];
+        let factor_of = |terms: &Terms| {
+            let is_after = terms.date_s(point.date_s) >= terms.step_from_s;
+            let step = if is_after { terms.step_engine[engine] } else { 0.0 };
+            (1.0 + terms.tsfc_engine[engine]) * (1.0 + step)
+        };
         let own = layers.contained.iter().map(factor_of).product::<f64>() * factor_of(layers.trial);
         // Meters belong to the trial layer alone: the meter errors that the model contains were corrected in the
         // recordings before.

@@ -171,6 +171,11 @@ impl AppliedForm {
         if let Some(variable) = self.of_recordings() {
             return Err(EffectModelError::FormOver { variable });
         }
+        if let Some(engine) = self.acts_on.engine() {
+            let expected = "fuel flow of all engines, or drag";
+            let value = f64::from(engine);
+            return Err(EffectModelError::Form { quantity: "engine", value, expected });
+        }
         let is_power = matches!(self.form, Form::Power { .. });
         let own = [
             Some(("size", Must::BeFinite, self.size)),
@@ -225,7 +230,8 @@ impl Change {
             let sized = form.size * form.shape(point, aloft, terms);
             match form.acts_on {
                 StepTarget::Drag => self.drag_coefficient += sized * DRAG_COEFFICIENT_PER_COUNT,
-                StepTarget::FuelFlow => self.ln_fuel_flow += sized * PERCENT,
+                // A form of one engine is refused.
+                _ => self.ln_fuel_flow += sized * PERCENT,
             }
         }
         self

@@ -49,6 +49,7 @@ pub(crate) struct Terms {
     pub(crate) fuel_flow_gain: [f64; MAXIMUM_ENGINES],
     pub(crate) step_fuel_flow: f64,
     pub(crate) step_drag: f64,
+    pub(crate) step_engine: [f64; MAXIMUM_ENGINES],
     /// Instant from which the step holds, s since 1970.
     pub(crate) step_from_s: f64,
     /// Of the engines and of the airframe.
@@ -134,6 +135,7 @@ impl Terms {
             fuel_flow_gain: [0.0; MAXIMUM_ENGINES],
             step_fuel_flow: 0.0,
             step_drag: 0.0,
+            step_engine: [0.0; MAXIMUM_ENGINES],
             step_from_s: f64::INFINITY,
             engine_history: History::NONE,
             airframe_history: History::NONE,
@@ -155,13 +157,22 @@ impl Terms {
             EffectId::FuelFlowGainEngine(engine) => {
                 add_engine(&mut self.fuel_flow_gain, engine, size);
             }
-            EffectId::StepChange => match effect.hidden {
-                HiddenParameter::Step { target: StepTarget::Drag, .. } => self.step_drag += size,
-                _ => self.step_fuel_flow += size,
-            },
+            EffectId::StepChange => self.add_step(effect.hidden, size),
             // The scatter of the heating value is among them. It moves no mean: no equation reads it, and variances are
             // handled where variances are.
             id => self.sizes[id.index()] += size,
+        }
+    }
+
+    fn add_step(&mut self, hidden: HiddenParameter, size: f64) {
+        let HiddenParameter::Step { target, .. } = hidden else {
+            self.step_fuel_flow += size;
+            return;
+        };
+        match (target, target.engine()) {
+            (_, Some(engine)) => add_engine(&mut self.step_engine, engine, size),
+            (StepTarget::Drag, None) => self.step_drag += size,
+            (_, None) => self.step_fuel_flow += size,
         }
     }
 

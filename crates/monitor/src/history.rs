@@ -126,7 +126,9 @@ impl History {
             let all = merged(&boundaries, &recorded);
             let shown = Levels::fit(series, &weights, &all, beliefs)?.at_mean_conditions(series);
             changes = found(&shown, &weights, &candidates, beliefs);
-            levels = levels_between(&mut changes, series, &weights, beliefs)?;
+            let asked = Asked::new(&shown, &weights, &[], *beliefs);
+            let stepped = stepped_events(&asked, &changes, &candidates)?;
+            levels = levels_between(&mut changes, &stepped, series, &weights, beliefs)?;
             let next: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
             let is_settled = next == boundaries;
             boundaries = next;
@@ -135,7 +137,9 @@ impl History {
             }
         }
         let measured = Levels::fit(series, &weights, &merged(&boundaries, &recorded), beliefs)?;
-        let events = (0..events.len()).map(|event| effect(event, &at_flight, &measured)).collect();
+        let events = (0..events.len())
+            .map(|event| effect(event, &at_flight, (&levels, &measured)))
+            .collect();
         let at_mean_conditions = levels.at_mean_conditions(series);
         let step_in_gap = gap::step_instead(series, &weights, &levels, (&recorded, beliefs));
         Some(Self { noise, weights, changes, levels, step_in_gap, events, at_mean_conditions })
@@ -192,18 +196,66 @@ fn merged(some: &[usize], others: &[usize]) -> Vec<usize> {
     all
 }
 
-/// Levels between changes, of which those go, one after the other, whose step may be none: its 95 % interval holds zero.
+/// First flights after recorded events that are more probably steps than not, beside the changes and each other: left out, one
+/// after the other, where the flights and what is believed of an event say rather that nothing changed.
+///
+/// ```text
+/// odds = p/(1 − p)·p(d | a step there)/p(d | none there),  p [`ChangeBeliefs::change_at_event`]    [monitoring.22]
+/// ```
+///
+/// A wash that is too small to be a change by itself takes back what a year of wear makes all the same: a trend over several of
+/// them, left out, is next to none.
+fn stepped_events(
+    asked: &Asked<'_>,
+    changes: &[Change],
+    candidates: &[Candidate],
+) -> Option<Vec<usize>> {
+    let Asked { series, weights, ref beliefs, middle_percent, .. } = *asked;
+    let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
+    let is_free = |flight: &usize| {
+        let near = |change: &Change| (change.earliest..=change.latest).contains(flight);
+        (1..series.len()).contains(flight) && !changes.iter().any(near)
+    };
+    let mut kept =
+        merged(&[], &candidates.iter().map(|c| c.flight).filter(is_free).collect::<Vec<_>>());
+    let at_event = beliefs.change_at_event;
+    let ln_believed = at_event.ln() - (-at_event).ln_1p();
+    let ln_evidence = |kept: &[usize]| {
+        let levels = Levels::fit(series, weights, &merged(&found, kept), beliefs)?;
+        Some(levels.ln_evidence(middle_percent, beliefs))
+    };
+    loop {
+        let with_all = ln_evidence(&kept)?;
+        let mut least: Option<(usize, f64)> = None;
+        for place in 0..kept.len() {
+            let mut others = kept.clone();
+            others.remove(place);
+            let ln_odds = ln_believed + with_all - ln_evidence(&others)?;
+            if least.is_none_or(|(_, least)| ln_odds < least) {
+                least = Some((place, ln_odds));
+            }
+        }
+        match least {
+            Some((place, ln_odds)) if ln_odds < 0.0 => kept.remove(place),
+            _ => return Some(kept),
+        };
+    }
+}
+
+/// Levels between changes and events that are steps, without the changes, one after the other, whose step may be none: its 95 %
+/// interval holds zero.
 fn levels_between(
     changes: &mut Vec<Change>,
+    stepped: &[usize],
     series: &Series,
     weights: &[f64],
     beliefs: &ChangeBeliefs,
 ) -> Option<Levels> {
     loop {
-        let boundaries: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
-        let levels = Levels::fit(series, weights, &boundaries, beliefs)?;
-        for (place, change) in changes.iter_mut().enumerate() {
-            if let Some(step) = levels.step_percent(place) {
+        let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
+        let levels = Levels::fit(series, weights, &merged(&found, stepped), beliefs)?;
+        for change in changes.iter_mut() {
+            if let Some(step) = levels.step_at(change.first_flight) {
                 change.step_percent = step;
             }
         }
@@ -341,19 +393,21 @@ fn belong(change: &mut Change, candidates: &[Candidate]) {
     }
 }
 
-fn effect(event: usize, at_flight: &[usize], measured: &Levels) -> EventEffect {
+/// What an event did: the step that the levels have there, or else, where they have none, the one of a fit with all events.
+fn effect(
+    event: usize,
+    at_flight: &[usize],
+    (levels, with_all): (&Levels, &Levels),
+) -> EventEffect {
     let first_flight = at_flight[event];
-    let place = measured.boundaries().iter().position(|boundary| *boundary == first_flight);
+    let effect_percent = levels.step_at(first_flight).or_else(|| with_all.step_at(first_flight));
     let others = at_flight.iter().enumerate();
     // Without a flight before and one after nothing is measured, and nothing together.
     let together_with = others
-        .filter(|(other, flight)| place.is_some() && *other != event && **flight == first_flight)
+        .filter(|(other, flight)| {
+            effect_percent.is_some() && *other != event && **flight == first_flight
+        })
         .map(|(other, _)| other)
         .collect();
-    EventEffect {
-        event,
-        first_flight,
-        effect_percent: place.and_then(|place| measured.step_percent(place)),
-        together_with,
-    }
+    EventEffect { event, first_flight, effect_percent, together_with }
 }

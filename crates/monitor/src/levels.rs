@@ -181,6 +181,12 @@ impl Levels {
         })
     }
 
+    /// The step before a flight, %; `None` where no piece begins with it.
+    pub(crate) fn step_at(&self, first_flight: usize) -> Option<Estimate> {
+        let place = self.boundaries.binary_search(&first_flight).ok()?;
+        self.step_percent(place)
+    }
+
     /// The level of the piece that a flight belongs to, at a date and mean conditions, %.
     #[must_use]
     pub fn level_percent(&self, flight: usize, years: f64) -> Estimate {

@@ -9,8 +9,8 @@ use flight::effect::{EffectId, HiddenParameter};
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
-    LEAST_TOLD, OTHERS_TOLD, advice, form_words, left_out_words, outside_words, region_words,
-    silent_words,
+    LEAST_TOLD, OTHERS_TOLD, advice, everywhere_words, form_words, left_out_words, outside_words,
+    region_words, silent_words,
 };
 use crate::summary::{counted, not_minus_zero};
 
@@ -151,7 +151,7 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
             if place.region.is_everywhere() {
                 let alone = diagnosis.r#where.len() == 1;
                 let words = if alone {
-                    "It has no place: it is everywhere."
+                    everywhere_words(diagnosis)
                 } else {
                     "It is everywhere, but not alike."
                 };

@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use diagnose::{
-    ActsOn, Diagnosis, FlightsOnPurpose, Found, FoundForm, Insufficient, LeftOutReason,
+    ActsOn, Diagnosis, FlightsOnPurpose, Found, FoundForm, Gap, Insufficient, LeftOutReason,
     LoadingKind, Magnitude, Measurement, Note, OutsideLibrary, Rest, RestKind, Separation, Sweep,
     SweepLoading, Unexplained, Variable, Verdict,
 };
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::statistics::NORMAL_95;
 use crate::summary::counted;
@@ -26,20 +26,39 @@ pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What a verdict of no gap means: noise, or more than noise that is no effect.
 pub fn silent_words(diagnosis: &Diagnosis) -> &'static str {
-    /// Less probable than that by noise alone, a gap of few flights exceeds it, however little is left in the mean of all; our
-    /// choice.
-    const BEYOND_NOISE: f64 = 0.001;
-    let gap = &diagnosis.gap;
-    if gap.rms_ci95[0] > gap.noise_floor_rms_percent || gap.p_value < BEYOND_NOISE {
+    if is_beyond_noise(&diagnosis.gap) {
         "No effect is seen: what exceeds the noise is too small, too different from flight to flight, or within what the model leaves open."
     } else {
         "Nothing beyond the noise: the model fits these flights."
     }
 }
 
+fn is_beyond_noise(gap: &Gap) -> bool {
+    /// Less probable than that by noise alone, a gap of few flights exceeds it, however little is left in the mean of all; our
+    /// choice.
+    const BEYOND_NOISE: f64 = 0.001;
+    gap.rms_ci95[0] > gap.noise_floor_rms_percent || gap.p_value < BEYOND_NOISE
+}
+
+/// What is said of a gap that lies in no place: that it depends on something all the same, where a form without a name says so.
+pub fn everywhere_words(diagnosis: &Diagnosis) -> &'static str {
+    let outside = &diagnosis.outside;
+    let depends = matches!(diagnosis.verdict, Verdict::OutsideLibrary(_))
+        && outside.variable.is_some()
+        && !outside.forms.first().is_some_and(FoundForm::is_a_level);
+    if depends {
+        "No part of what was flown stands out by itself, but it is not alike everywhere."
+    } else {
+        "It has no place: it is everywhere."
+    }
+}
+
 /// What to do after a verdict: one sentence or two.
 pub fn advice(diagnosis: &Diagnosis) -> String {
     match &diagnosis.verdict {
+        Verdict::NoGap if is_beyond_noise(&diagnosis.gap) => {
+            "Nothing to apply: no effect explains what exceeds the noise.".to_owned()
+        }
         Verdict::NoGap => {
             "Nothing. Each effect has a size that would just have been seen.".to_owned()
         }
@@ -127,7 +146,20 @@ const fn undecided(found: &Found) -> &'static str {
 /// An effect in words at the sign that was found, and its name in files.
 fn title(diagnosis: &Diagnosis, id: EffectId) -> String {
     let size = told_size(diagnosis, id).map_or(1.0, |size| size.value);
-    format!("{} ({id})", id.phrase(size))
+    format!("{} ({id})", phrase(diagnosis, id, size))
+}
+
+/// An effect in words at the sign of its size; of a step of one engine, which.
+pub fn phrase(diagnosis: &Diagnosis, id: EffectId, size: f64) -> String {
+    let cause = diagnosis.causes.iter().find(|cause| cause.effect == id);
+    let engine = cause.and_then(|cause| match cause.hidden {
+        HiddenParameter::Step { target, .. } => target.engine(),
+        _ => None,
+    });
+    engine.map_or_else(
+        || id.phrase(size),
+        |engine| format!("{} of engine {engine} alone, or of its meter", id.phrase(size)),
+    )
 }
 
 pub(crate) fn capital(words: &str) -> String {

@@ -192,13 +192,7 @@ fn begun_alike<'a>(
     if !goes_on && let Some(new) = alike.values().next() {
         // What all tails of a folder have in common is asked of the others.
         let states = || folder.tails().into_iter().filter_map(|tail| folder.state_of(&tail));
-        let otherwise = if states().any(|state| new.0.learns_more_than(&state.begun)) {
-            Some(TABLE_ALONE)
-        } else if states().any(|state| new.0.learns_less_than(&state.begun)) {
-            Some(MORE_THAN_TABLE)
-        } else {
-            None
-        };
+        let otherwise = states().find_map(|state| other_choice(&new.0, &state.begun));
         if let Some(difference) = otherwise
             && states().all(|state| state.begun != new.0.begun)
         {
@@ -296,6 +290,17 @@ const fn law_of(arguments: &AdaptArgs) -> LawAsked {
     }
 }
 
+/// What a tail that was begun with this (its SHA-256) was to learn, where it is more or less than what it would learn now.
+fn other_choice(start: &Start<'_>, begun: &str) -> Option<&'static str> {
+    if start.learns_more_than(begun) {
+        Some(TABLE_ALONE)
+    } else if start.learns_less_than(begun) {
+        Some(MORE_THAN_TABLE)
+    } else {
+        None
+    }
+}
+
 /// What a tail that the folder holds was begun with otherwise.
 fn difference(
     folder: &Folder,
@@ -305,11 +310,9 @@ fn difference(
     if !folder.holds(tail) || folder.state_of(tail).is_some_and(|s| s.begun == start.begun) {
         return Ok(None);
     }
-    if folder.state_of(tail).is_some_and(|state| start.learns_more_than(&state.begun)) {
-        return Ok(Some(Otherwise::Begun("setting", TABLE_ALONE.to_owned())));
-    }
-    if folder.state_of(tail).is_some_and(|state| start.learns_less_than(&state.begun)) {
-        return Ok(Some(Otherwise::Begun("setting", MORE_THAN_TABLE.to_owned())));
+    if let Some(setting) = folder.state_of(tail).and_then(|state| other_choice(start, &state.begun))
+    {
+        return Ok(Some(Otherwise::Begun("setting", setting.to_owned())));
     }
     // A damaged tail is refused when its flights are.
     let Ok(stored) = folder.load(tail) else { return Ok(None) };

@@ -37,6 +37,8 @@ pub(crate) struct NuisanceLayout {
     pub(crate) table: Range<usize>,
     /// Smooth functions beyond what was flown.
     pub(crate) beyond: Range<usize>,
+    /// Contrasts between engines that drift.
+    pub(crate) drift: Range<usize>,
 }
 
 /// What is uncertain besides a baseline.
@@ -52,6 +54,8 @@ pub(crate) struct Uncertain {
     pub(crate) table_rank: usize,
     /// Columns of smooth functions beyond what was flown.
     pub(crate) beyond: usize,
+    /// Contrasts between engines, where they may drift.
+    pub(crate) drift: usize,
 }
 
 impl NuisanceLayout {
@@ -63,6 +67,7 @@ impl NuisanceLayout {
             DECK_TERMS,
             STANDING_EFFECTS.len(),
             drag,
+            0,
             0,
             0,
             0,
@@ -92,11 +97,12 @@ impl NuisanceLayout {
             gauges,
             uncertain.table_rank,
             uncertain.beyond,
+            uncertain.drift,
         ])
     }
 
     /// Widths in the order of the fields.
-    fn tiled(widths: [usize; 11]) -> Self {
+    fn tiled(widths: [usize; 12]) -> Self {
         let mut end = 0;
         let mut widths = widths.into_iter();
         let mut next = || {
@@ -116,12 +122,13 @@ impl NuisanceLayout {
             gauges: next(),
             table: next(),
             beyond: next(),
+            drift: next(),
         }
     }
 
     /// Number of columns.
     pub(crate) const fn len(&self) -> usize {
-        self.beyond.end
+        self.drift.end
     }
 
     /// Columns of a baseline's coefficients: those that its covariance is over.
@@ -149,6 +156,7 @@ mod tests {
             &layout.gauges,
             &layout.table,
             &layout.beyond,
+            &layout.drift,
         ] {
             for column in range.clone() {
                 owners[column] += 1;
@@ -169,6 +177,7 @@ mod tests {
                     gauges: any,
                     table_rank,
                     beyond: 6,
+                    drift: contrasts,
                     ..Uncertain::default()
                 };
                 let design = NuisanceLayout::of_design(Some(&baseline), uncertain);
@@ -176,7 +185,7 @@ mod tests {
                 // What a baseline's covariance is over has the same places in the design.
                 assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
                 assert_eq!(design.standing_effects, baseline.standing_effects);
-                let others = CHORD_COLUMNS + 1 + 2 * usize::from(any) + table_rank + 6;
+                let others = CHORD_COLUMNS + 1 + 2 * usize::from(any) + table_rank + 6 + contrasts;
                 assert_eq!(design.len(), baseline.len() + others);
             }
         }

@@ -186,7 +186,7 @@ impl Smooth {
 
     /// Whether a value lies beyond those that were flown.
     pub(crate) fn is_beyond(&self, value: f64) -> bool {
-        self.text.beyond(self.at(value)) > BEYOND_BY_ROUNDING
+        self.beyond(value) != 0.0
     }
 
     /// Writes the terms at a value; returns the share of the process' variance that they do not hold.

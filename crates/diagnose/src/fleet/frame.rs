@@ -104,7 +104,7 @@ impl<'a> FleetFrame<'a> {
             &flights,
             input.reference(),
             |points, engines, starts| {
-                let dates = DateGrid::coarse(starts, &[], None);
+                let dates = DateGrid::coarse(starts, &[], None, 0);
                 Library::new(&model, points, engines, dates, chosen)
             },
         );

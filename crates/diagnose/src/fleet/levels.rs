@@ -73,6 +73,7 @@ impl Beliefs {
                 effect_of: (0..count).collect(),
                 ln_choices: vec![0.0; count],
                 effects: count,
+                age_of: vec![None; count],
                 held: vec![false; count],
                 rows: 0.0,
             },

@@ -9,6 +9,7 @@ use core::ops::Range;
 
 use effects::{EffectReferences, Variable};
 use faer::Mat;
+use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 
 use crate::baseline::Baseline;
 use crate::baseline::layout::{NuisanceLayout, Uncertain};
@@ -16,7 +17,9 @@ use crate::hypotheses::design::beyond::Beyond;
 use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
-use crate::priors::{BLEED_DEVIATION, DECK_DEVIATION, GAUGE_GAIN_DEVIATION};
+use crate::priors::{
+    BLEED_DEVIATION, DECK_DEVIATION, ENGINES_APART_PERCENT_PER_YEAR, GAUGE_GAIN_DEVIATION,
+};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::FlightWhitening;
@@ -69,6 +72,7 @@ impl<'a> Design<'a> {
         let beyond = Beyond::of(baseline, &data.segments);
         let uncertain = Uncertain {
             beyond: beyond.len(),
+            drift: if data.engines_change { data.channels.contrasts } else { 0 },
             deck: data.channels.n2,
             bleed: data.channels.n2 && data.segments.iter().any(is_bled),
             gauges: data.flights.iter().any(|flight| flight.gauge.is_some()),
@@ -236,6 +240,14 @@ impl<'a> Design<'a> {
             let mut values = [0.0; MAXIMUM_CHANNELS];
             if contrast <= channels.contrasts && row.is_recorded[contrast] {
                 values[contrast] = 1.0;
+            }
+            rows.put(column, &values);
+        }
+        let years = (row.point.date_s - self.references.date_s) / (DAYS_PER_YEAR * SECONDS_PER_DAY);
+        for (column, contrast) in columns(&layout.drift).zip(1..) {
+            let mut values = [0.0; MAXIMUM_CHANNELS];
+            if row.is_recorded[contrast] {
+                values[contrast] = ENGINES_APART_PERCENT_PER_YEAR / 100.0 * years;
             }
             rows.put(column, &values);
         }

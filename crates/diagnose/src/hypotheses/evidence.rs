@@ -4,7 +4,7 @@
 //! small amounts of every other effect) was integrated out before. A hypothesis is a choice of columns; an effect with a hidden
 //! parameter has several columns that share its prior mass.
 
-use flight::effect::EffectSign;
+use flight::effect::{EffectGroup, EffectId, EffectSign};
 use statrs::function::erf::erfc;
 
 use crate::hypotheses::backgrounds::Background;
@@ -67,6 +67,8 @@ pub(crate) struct Scorer {
     /// ln of the number of hidden parameters that each column is one of.
     pub(crate) ln_choices: Vec<f64>,
     pub(crate) effects: usize,
+    /// Of every effect, which part gets worse with age by it.
+    pub(crate) age_of: Vec<Option<EffectGroup>>,
     /// Effects that no hypothesis names, because the uncertain table holds them.
     pub(crate) held: Vec<bool>,
     pub(crate) rows: f64,
@@ -104,6 +106,17 @@ impl Prior {
     }
 }
 
+/// The part that gets worse with age by an effect; `None` for any other effect.
+const fn part_that_ages(id: EffectId) -> Option<EffectGroup> {
+    match id {
+        EffectId::EngineAgeing
+        | EffectId::EngineHistory
+        | EffectId::AirframeAgeing
+        | EffectId::AirframeHistory => Some(id.entry().group),
+        _ => None,
+    }
+}
+
 impl Scorer {
     pub(crate) fn new(library: &Library, rows: f64, held: Vec<bool>) -> Self {
         let priors = library
@@ -115,6 +128,7 @@ impl Scorer {
             priors,
             effect_of: library.columns.iter().map(|column| column.effect).collect(),
             ln_choices: library.columns.iter().map(|column| column.ln_choices).collect(),
+            age_of: library.effects.iter().map(|effect| part_that_ages(effect.id)).collect(),
             effects: library.effects.len() + usize::from(library.heating_value)
                 - held.iter().filter(|held| **held).count(),
             held,
@@ -124,6 +138,13 @@ impl Scorer {
 
     pub(crate) fn columns(&self) -> usize {
         self.priors.len()
+    }
+
+    /// Whether two columns are ageing and history of one part: a history whose falls take nothing back is ageing, and both
+    /// together, one against the other, are a step.
+    pub(crate) fn is_one_history(&self, one: usize, other: usize) -> bool {
+        let part = |column: usize| self.age_of[self.effect_of[column]];
+        part(one).is_some() && part(one) == part(other)
     }
 
     pub(crate) fn power(&self) -> f64 {

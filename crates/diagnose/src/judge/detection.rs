@@ -13,12 +13,13 @@ use crate::judge::verdict::{beside, closed, credit};
 use crate::output::Gap;
 use crate::output::form::FoundForm;
 use crate::output::verdict::Closure;
+use crate::place::find::FoundPlaces;
 use crate::search::analyse::{Analysis, DRAG_OF_A_TABLE};
 use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
     LARGEST_REST, LEAST_OF_A_FORM, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM,
-    OUTSIDE_PROBABILITY, SMALLEST_GAP_PERCENT, UNPROVEN_SHARE,
+    OUTSIDE_PROBABILITY, SMALLEST_GAP_PERCENT, SURE_P_VALUE, UNPROVEN_SHARE,
 };
 
 /// What a decision is made from.
@@ -36,8 +37,8 @@ pub(crate) struct DetectionInput<'a> {
     /// Whether no effect at all is improbable, or the size exceeds noise and uncertainty; the latter alone.
     pub(crate) is_real: bool,
     pub(crate) exceeds_uncertainty: bool,
-    /// Whether one engine is apart from the others, beyond what the model does not know and what a search finds by chance.
-    pub(crate) lies_at_an_engine: bool,
+    /// Where the gap lies, beyond what the model does not know and what a search finds by chance.
+    pub(crate) places: Option<&'a FoundPlaces>,
 }
 
 /// What was decided.
@@ -59,6 +60,8 @@ pub(crate) fn detect(
 ) -> Detection {
     let Problem { system, library, .. } = problem;
     let DetectionInput { distances, posteriors, gap, own, unseen, .. } = *input;
+    let lies_at_an_engine = input.places.is_some_and(FoundPlaces::name_an_engine);
+    let has_a_place = input.places.is_some_and(FoundPlaces::refute_scatter);
     let is_probable = |table: &TableFinding| table.probability > MORE_PROBABLE_THAN_NOT;
     let found = TableFinding::fit(system, input.analysis, library).filter(is_probable);
     let was_found = found.is_some();
@@ -78,7 +81,8 @@ pub(crate) fn detect(
         && !closes_more_than(OTHER_FORM[0], unseen);
     let nothing_predicted = LazyCell::new(|| smooth_predicts_nothing(problem, own));
     // What smooth functions that were fitted to other flights predict does not differ from flight to flight by chance.
-    let no_scatter = is_scatter && table.is_none() && !*nothing_predicted;
+    // Nor is it scatter that has a place.
+    let no_scatter = is_scatter && table.is_none() && (has_a_place || !*nothing_predicted);
     // A scatter closes nothing, but what is named with it must not make unseen flights worse.
     let unproven = no_scatter
         || refuted_table
@@ -87,9 +91,11 @@ pub(crate) fn detect(
     if table.is_none() && (leaves_most || unproven) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
-    // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
+    // Where no name holds more than half and neither size nor p-value shows a gap, nothing is said to be there.
+    let is_sure = gap.p_value < SURE_P_VALUE;
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let something = input.exceeds_uncertainty
+        || is_sure
         || refuted_table
         || no_scatter
         || smooth_term > OUTSIDE_PROBABILITY
@@ -100,7 +106,7 @@ pub(crate) fn detect(
     let beyond_table = top.filter(|top| !DRAG_OF_A_TABLE.contains(&id_of(library, top.effect)));
     let is_named = beyond_table
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
-    let announced = taught && !input.exceeds_uncertainty && !input.lies_at_an_engine;
+    let announced = taught && !input.exceeds_uncertainty && !lies_at_an_engine && !is_sure;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
     let is_outside = is_unnamed(outside, named);
     let leading =
@@ -111,12 +117,17 @@ pub(crate) fn detect(
         && !own_error
         && (is_large(system, gap, top)
             || is_outside && is_large_form(forms.get_or_insert_with(leading)));
-    let stands_out = is_seen && !is_vague(gap, outside, top, taught && makes_worse(unseen));
+    let is_told = is_sure || is_scatter && has_a_place;
+    let is_vague = !is_told && is_vague(gap, outside, top, taught && makes_worse(unseen));
+    let stands_out = is_seen && !is_vague;
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
     // functions, and may be all of a large gap: the form that describes it is asked then.
-    let has_no_witness =
-        stands_out && taught && !input.lies_at_an_engine && is_outside && *nothing_predicted;
+    let has_no_witness = stands_out
+        && taught
+        && !(lies_at_an_engine || has_a_place)
+        && is_outside
+        && *nothing_predicted;
     let is_borne_out = !has_no_witness || {
         let best = forms.get_or_insert_with(leading).first();
         bears_out(best.and_then(|best| best.closure))

@@ -51,7 +51,7 @@ fn with_far_too_little_drag<T>(
         .unwrap()
         .between_nodes(BetweenNodes::Smooth);
     let nothing = |points: &[_], engines: bool, starts: &[f64]| {
-        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
+        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None, 0), |_| false)
     };
     let baseline = held_against_baseline.then_some(&taught);
     let against = baseline.map_or(Reference::Untaught, Reference::Baseline);
@@ -168,7 +168,7 @@ pub(crate) fn with_exact_table<T>(
         .unwrap()
         .between_nodes(BetweenNodes::Smooth);
     let nothing = |points: &[_], engines: bool, starts: &[f64]| {
-        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
+        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None, 0), |_| false)
     };
     let (data, _) =
         PreparedFlights::prepare(&effects, &records, Reference::Baseline(&taught), nothing);

@@ -23,6 +23,8 @@ pub(crate) struct DateGrid {
     /// When histories begin to gather, and how many years the flights last.
     since_s: f64,
     span_years: f64,
+    /// What a step may be of.
+    targets: Vec<StepTarget>,
     steps: Course,
     engine: Course,
     airframe: Course,
@@ -51,8 +53,13 @@ enum Stage {
 
 impl DateGrid {
     /// For flights that start at these instants. `reference_s` is the date at which the model is right, where it has learnt;
-    /// `events_s` are instants at which something is known to have been done.
-    pub(crate) fn coarse(starts_s: &[f64], events_s: &[f64], reference_s: Option<f64>) -> Self {
+    /// `events_s` are instants at which something is known to have been done; of the first `engines` engines, each may have changed alone.
+    pub(crate) fn coarse(
+        starts_s: &[f64],
+        events_s: &[f64],
+        reference_s: Option<f64>,
+        engines: usize,
+    ) -> Self {
         let mut starts = starts_s.to_vec();
         starts.sort_by(f64::total_cmp);
         let between_s: Vec<f64> = starts
@@ -68,6 +75,10 @@ impl DateGrid {
             events_s: events_s.iter().filter(among).copied().collect(),
             since_s: reference_s.map_or(first, |reference| reference.min(first)),
             span_years: (last - first) / (DAYS_PER_YEAR * SECONDS_PER_DAY),
+            targets: [StepTarget::FuelFlow, StepTarget::Drag]
+                .into_iter()
+                .chain(StepTarget::ENGINES.into_iter().take(engines))
+                .collect(),
             steps: nothing.clone(),
             engine: nothing.clone(),
             airframe: nothing,
@@ -75,7 +86,7 @@ impl DateGrid {
         };
         let course =
             |tried, dates| Course { tried, spacing: grid.spacing_of(dates), stage: Stage::Coarse };
-        let steps = course(steps_at(&grid.with_events(STEP_DATES)), STEP_DATES);
+        let steps = course(grid.steps_at(&grid.with_events(STEP_DATES)), STEP_DATES);
         let histories = grid.coarse_histories(&grid.with_events(HISTORY_DATES));
         let histories = course(histories, HISTORY_DATES);
         grid.steps = steps;
@@ -93,7 +104,7 @@ impl DateGrid {
     /// however few of them are tried. `None` where all that are tried are alike and stand for the rest.
     pub(crate) fn ln_choices(&self, id: EffectId, hidden: HiddenParameter) -> Option<f64> {
         let (falls, others) = match hidden {
-            HiddenParameter::Step { .. } => (1, 2),
+            HiddenParameter::Step { .. } => (1, self.targets.len()),
             HiddenParameter::History(history) => (history.falls_s().count(), RECOVERED_FINE.len()),
             _ => return None,
         };
@@ -130,7 +141,7 @@ impl DateGrid {
         let spacing = course.spacing.div_ceil(NEIGHBOURS);
         let next = match leading {
             HiddenParameter::Step { from_s, .. } if course.spacing > 1 => Course {
-                tried: steps_at(&self.about(from_s, spacing)),
+                tried: self.steps_at(&self.about(from_s, spacing)),
                 spacing,
                 stage: Stage::Closer,
             },
@@ -289,16 +300,17 @@ impl DateGrid {
         tried
     }
 
+    fn steps_at(&self, dates_s: &[f64]) -> Vec<HiddenParameter> {
+        let at = |&from_s: &f64| {
+            self.targets.iter().map(move |&target| HiddenParameter::Step { from_s, target })
+        };
+        dates_s.iter().flat_map(at).collect()
+    }
+
     fn histories(&self, falls_s: &[f64], recovered: &[f64]) -> Vec<HiddenParameter> {
         let histories = recovered.iter().map(|share| History::new(self.since_s, *share, falls_s));
         histories.flatten().map(HiddenParameter::History).collect()
     }
-}
-
-fn steps_at(dates_s: &[f64]) -> Vec<HiddenParameter> {
-    let targets = [StepTarget::FuelFlow, StepTarget::Drag];
-    let at = |&from_s: &f64| targets.map(|target| HiddenParameter::Step { from_s, target });
-    dates_s.iter().flat_map(at).collect()
 }
 
 #[cfg(test)]

@@ -4,12 +4,10 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
-use effects::Variable;
 use faer::Mat;
 
 use crate::math::random::RandomStream;
 use crate::output::Slice;
-use crate::output::region::Condition;
 use crate::place::acceleration::expected_errors_removed;
 use crate::place::binned_variable::places;
 use crate::place::draws::{Drawing, NoiseLevel, chords, draw};
@@ -22,7 +20,8 @@ use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::{
-    FEWEST_FLIGHTS_OF_A_REGION, MOST_COMPARED, MOST_REGIONS, REGION_DRAWS, REGION_P_VALUE,
+    FEWEST_FLIGHTS_OF_A_REGION, MOST_COMPARED, MOST_REGIONS, REFUTES_SCATTER, REGION_DRAWS,
+    REGION_P_VALUE,
 };
 
 /// Draws that are summed together.
@@ -54,9 +53,8 @@ impl FoundPlaces {
             conditions.any(|condition| drivers.contains(&condition.variable))
         });
         if let Some(first) = leads {
-            // A step has its own date, and bins of dates are weeks long.
-            let of_date = |condition: &Condition| condition.variable == Variable::Date;
-            if gap.step().is_some() && first.region.conditions.iter().all(of_date) {
+            // A step has its own date: bins of dates are weeks long, and a second condition is what they leave of it.
+            if gap.step().is_some() {
                 *first = named;
             }
             return;
@@ -80,6 +78,11 @@ impl FoundPlaces {
         }
     }
 
+    /// Whether a place is so clear that the gap is no scatter from flight to flight, which has none.
+    pub(crate) fn refute_scatter(&self) -> bool {
+        self.regions.first().is_some_and(|slice| slice.p_value <= REFUTES_SCATTER)
+    }
+
     /// Whether one engine is apart from the others.
     pub(crate) fn name_an_engine(&self) -> bool {
         self.regions.iter().any(|slice| slice.region.engine.is_some())
@@ -100,7 +103,7 @@ impl FoundPlaces {
 pub(crate) fn find(
     system: &WhitenedSystem<'_>,
     analysis: &Analysis,
-    noise_scale: f64,
+    (noise_scale, floor): (f64, f64),
     seed: u64,
 ) -> FoundPlaces {
     let data = system.data;
@@ -111,7 +114,8 @@ pub(crate) fn find(
     let chords = chords(system);
     let noise = Noise::new(system, level);
     let search = Search::new(&places, &noise.weighed(&vec![1.0; data.segments.len()]), engines);
-    let (null, variances) = null_of(&search, &noise, (level, &chords), &mut source);
+    let (null, mut variances) = null_of(&search, &noise, (level, &chords), &mut source);
+    scale_to(floor, &mut variances);
 
     let as_recorded = gaps(system);
     let mut left = expected_errors_removed(system, &as_recorded);
@@ -142,6 +146,17 @@ pub(crate) fn find(
         _ => None,
     };
     FoundPlaces { regions: found, everywhere, variances }
+}
+
+/// Variances with the mean square that closure takes for noise: what can be explained is the same for both. Draws hold also what the
+/// model does not know, and the scatter that is itself named, which would leave less than nothing to explain.
+fn scale_to(floor: f64, variances: &mut [f64]) {
+    let mean = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
+    if mean > 0.0 {
+        for variance in variances {
+            *variance *= floor / mean;
+        }
+    }
 }
 
 /// Noise as the best model finds it, never less than announced.

@@ -60,6 +60,7 @@ impl PreparedFlights<'_> {
                 share: 1.0,
             }],
             segments,
+            engines_change: self.engines_change,
             left_out: std::collections::BTreeMap::new(),
         })
     }

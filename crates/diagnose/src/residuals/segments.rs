@@ -13,6 +13,7 @@ use perf_model::variance::mean_acceleration_deviation_m_s2;
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::library::Library;
+use crate::library::engine_changes::engines_change;
 use crate::output::note::{LeftOutReason, Note};
 use crate::residuals::chords::chord_errors;
 use crate::residuals::gauges::{calibrate, gauge_row};
@@ -36,6 +37,8 @@ pub(crate) struct PreparedFlights<'a> {
     pub(crate) predictor: Predictor<'a>,
     pub(crate) flights: Vec<FlightRows>,
     pub(crate) segments: Vec<SegmentRow>,
+    /// Whether what an engine burns beside the others is another before and after some date.
+    pub(crate) engines_change: bool,
     /// Segments that were left out, by reason.
     pub(crate) left_out: BTreeMap<LeftOutReason, usize>,
 }
@@ -145,7 +148,8 @@ impl<'a> PreparedFlights<'a> {
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
         let library = library_of(&points, channels.contrasts > 0, &starts);
-        let data = Self::of_inside(model, (inside, left_out), reference, predictor, &library);
+        let mut data = Self::of_inside(model, (inside, left_out), reference, predictor, &library);
+        data.engines_change = channels.contrasts > 0 && engines_change(flights);
         (data, library)
     }
 
@@ -184,6 +188,7 @@ impl<'a> PreparedFlights<'a> {
             predictor,
             flights: Vec::with_capacity(inside.len()),
             segments: Vec::new(),
+            engines_change: false,
             left_out,
         };
         for (segments, gauges) in inside {

@@ -77,7 +77,7 @@ pub(crate) fn search(
     scratch.limit(best - negligible);
     for a in 0..columns.len() {
         for b in a + 1..columns.len() {
-            if scorer.effect_of[a] == scorer.effect_of[b] {
+            if scorer.effect_of[a] == scorer.effect_of[b] || scorer.is_one_history(a, b) {
                 continue;
             }
             let model = Hypothesis { columns: vec![a, b], flight_scatter_percent: None };
@@ -108,8 +108,14 @@ pub(crate) fn search(
     models
 }
 
-/// Whether neither of two effects is larger than any such effect is.
+/// Whether neither of two effects is larger than any such effect is, and not one part gets better with age while the other gets
+/// worse: two slopes of different dates, one against the other, are a step, which is an effect of its own.
 fn is_possible(scorer: &Scorer, scored: &ScoredHypothesis) -> bool {
+    let columns = &scored.hypothesis.columns;
+    let is_of_age = columns.iter().all(|&column| scorer.age_of[scorer.effect_of[column]].is_some());
+    if is_of_age && scored.sizes.iter().product::<f64>() < 0.0 {
+        return false;
+    }
     let is_usual = |(&column, size): (&usize, &f64)| {
         let prior = &scorer.priors[column];
         (size - prior.mean).abs() <= LARGEST_OF_TWO * prior.scales[0].0

@@ -184,6 +184,7 @@ mod tests {
             effect_of: vec![0, 1, 2],
             ln_choices: vec![0.0; 3],
             effects: 3,
+            age_of: vec![None; 3],
             held: vec![false; 3],
             rows: ROWS,
         }

@@ -6,6 +6,7 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
 use super::History;
+use crate::MAXIMUM_ENGINES;
 
 /// What a dated step multiplies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -15,6 +16,18 @@ pub enum StepTarget {
     FuelFlow,
     /// Drag coefficient.
     Drag,
+    /// Fuel flow of engine 1.
+    #[serde(rename = "engine_1")]
+    Engine1,
+    /// Fuel flow of engine 2.
+    #[serde(rename = "engine_2")]
+    Engine2,
+    /// Fuel flow of engine 3.
+    #[serde(rename = "engine_3")]
+    Engine3,
+    /// Fuel flow of engine 4.
+    #[serde(rename = "engine_4")]
+    Engine4,
 }
 
 /// The argument of the parabola of `tsfc_throttle`.
@@ -55,12 +68,32 @@ pub enum HiddenParameter {
 }
 
 impl StepTarget {
+    /// The engines, by their number.
+    pub const ENGINES: [Self; MAXIMUM_ENGINES] =
+        [Self::Engine1, Self::Engine2, Self::Engine3, Self::Engine4];
+
     /// In words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::FuelFlow => "fuel flow",
             Self::Drag => "drag",
+            Self::Engine1 => "fuel flow of engine 1",
+            Self::Engine2 => "fuel flow of engine 2",
+            Self::Engine3 => "fuel flow of engine 3",
+            Self::Engine4 => "fuel flow of engine 4",
+        }
+    }
+
+    /// The number of the engine, from 1, where it is one alone.
+    #[must_use]
+    pub const fn engine(self) -> Option<u8> {
+        match self {
+            Self::FuelFlow | Self::Drag => None,
+            Self::Engine1 => Some(1),
+            Self::Engine2 => Some(2),
+            Self::Engine3 => Some(3),
+            Self::Engine4 => Some(4),
         }
     }
 }

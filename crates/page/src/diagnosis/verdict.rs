@@ -7,8 +7,8 @@ use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_text::described;
 use pipeline::diagnosis_words::{
-    NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, advice, are_few, is_open, near_and_far, others_beside,
-    others_of_class, outside_words, region_words, silent_words, told_size,
+    NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, advice, are_few, everywhere_words, is_open, near_and_far,
+    others_beside, others_of_class, outside_words, phrase, region_words, silent_words, told_size,
 };
 
 use super::Tail;
@@ -26,7 +26,7 @@ fn size_words(diagnosis: &Diagnosis, id: EffectId) -> Option<(f64, String)> {
 /// An effect in words at the sign that was found, and its name in files.
 pub(super) fn effect(diagnosis: &Diagnosis, id: EffectId) -> Markup {
     let size = size_words(diagnosis, id).map_or(1.0, |(size, _)| size);
-    html! { (id.phrase(size)) " " span.id { "(" (id) ")" } }
+    html! { (phrase(diagnosis, id, size)) " " span.id { "(" (id) ")" } }
 }
 
 /// The answer, in a box, with what the comparison with its type says of the tail.
@@ -42,7 +42,7 @@ pub(super) fn card(diagnosis: &Diagnosis, of_fleet: Option<&str>) -> Markup {
                 dt { "Where" }
                 dd {
                     @if place.region.is_everywhere() {
-                        @if diagnosis.r#where.len() == 1 { "Everywhere that was flown: it has no place." }
+                        @if diagnosis.r#where.len() == 1 { (everywhere_words(diagnosis)) }
                         @else { "Everywhere that was flown, but not alike." }
                     }
                     @else {
@@ -78,9 +78,9 @@ fn what(diagnosis: &Diagnosis) -> Markup {
             @for (place, id) in found.effects.iter().enumerate() {
                 @let size = size_words(diagnosis, *id);
                 @if place > 0 { ", together with " }
-                @let phrase = id.phrase(size.as_ref().map_or(1.0, |(size, _)| *size));
-                @if open { (phrase) }
-                @else { b { @if place == 0 { (capitalised(&phrase)) } @else { (phrase) } } }
+                @let named = phrase(diagnosis, *id, size.as_ref().map_or(1.0, |(size, _)| *size));
+                @if open { (named) }
+                @else { b { @if place == 0 { (capitalised(&named)) } @else { (named) } } }
                 " " span.id { "(" (id) ")" }
                 @if let Some((_, words)) = size { ": " (words) }
                 @if place > 0 {
@@ -173,7 +173,7 @@ fn in_short(tails: &[Tail<'_>]) -> String {
             Verdict::Effects(found) if !is_open(&tail.diagnosed.diagnosis.verdict) => {
                 let diagnosis = &tail.diagnosed.diagnosis;
                 let size = |id| size_words(diagnosis, id).map_or(1.0, |(size, _)| size);
-                let named = found.effects.iter().map(|id| id.phrase(size(*id)));
+                let named = found.effects.iter().map(|id| phrase(diagnosis, *id, size(*id)));
                 named.collect::<Vec<_>>().join(" with ")
             }
             _ => short(&tail.diagnosed.diagnosis),
@@ -223,7 +223,7 @@ fn short(diagnosis: &Diagnosis) -> String {
         Verdict::Effects(found) => {
             let told = found.effects.iter().map(|id| {
                 let (size, words) = size_words(diagnosis, *id).unwrap_or((1.0, String::new()));
-                format!("{}: {words}", id.phrase(size))
+                format!("{}: {words}", phrase(diagnosis, *id, size))
             });
             told.collect::<Vec<_>>().join("; ")
         }

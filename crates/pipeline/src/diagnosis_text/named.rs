@@ -7,7 +7,7 @@ use super::digits;
 use crate::diagnosis_words::{
     LEAST_TOLD, NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, OTHERS_TOLD, SEPARATIONS_TOLD, TOLD_APART,
     are_few, capital, distances_words, follows, is_open, joined, measurement_words, near_and_far,
-    others_beside, others_of_class, told_size, variable_words,
+    others_beside, others_of_class, phrase, told_size, variable_words,
 };
 
 /// A guide whose drag is off, and what acts in addition.
@@ -218,7 +218,7 @@ fn effect_told(diagnosis: &Diagnosis, id: EffectId) -> String {
     let hidden = cause.map_or_else(String::new, |cause| cause.hidden.to_string());
     format!(
         "{}, {id} {} {} ({} to {}){}",
-        id.phrase(value),
+        phrase(diagnosis, id, value),
         figure(value),
         id.unit_words(),
         figure(low),

@@ -44,7 +44,7 @@ pub fn applied_form_words(applied: &AppliedForm) -> String {
 const fn of_target(target: StepTarget) -> (&'static str, &'static str) {
     match target {
         StepTarget::Drag => ("drag", "counts"),
-        StepTarget::FuelFlow => ("fuel flow", "%"),
+        of_fuel_flow => (of_fuel_flow.words(), "%"),
     }
 }
 

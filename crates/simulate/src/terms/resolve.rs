@@ -69,6 +69,7 @@ impl Terms {
                     match effect.target {
                         StepTarget::Drag => self.drag.factor *= 1.0 + size * PERCENT,
                         StepTarget::FuelFlow => self.scale_engines(1.0 + size * PERCENT),
+                        engine => self.scale_engine(engine, 1.0 + size * PERCENT),
                     }
                 }
             }
@@ -210,6 +211,14 @@ impl Terms {
             EffectId::RotatingEarth => self.earth.rotating_earth = true,
             EffectId::IsobaricSlope => self.earth.extra_slope += size,
             _ => {}
+        }
+    }
+
+    /// Multiplies the TSFC of one engine.
+    fn scale_engine(&mut self, target: StepTarget, factor: f64) {
+        let number = target.engine().and_then(|engine| usize::from(engine).checked_sub(1));
+        if let Some(engine) = number.and_then(|engine| self.fuel.engine_factor.get_mut(engine)) {
+            *engine *= factor;
         }
     }
 

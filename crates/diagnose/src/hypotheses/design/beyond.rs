@@ -17,6 +17,7 @@ const COLUMNS: usize = 3;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Beyond {
     sides: Vec<Side>,
+    root: Root,
 }
 
 /// One smooth function on one side.
@@ -51,7 +52,7 @@ impl Beyond {
                 },
             )
         });
-        Self { sides: sides.collect() }
+        Self { sides: sides.collect(), root: Root::new() }
     }
 
     /// Number of columns.
@@ -66,7 +67,7 @@ impl Beyond {
             let distance = distances[side.smooth];
             let is_there = distance != 0.0 && (distance > 0.0) == side.is_above;
             let share = if is_there { distance.abs() / side.farthest } else { 0.0 };
-            for (term, value) in terms.iter_mut().zip(terms_at(share)) {
+            for (term, value) in terms.iter_mut().zip(self.root.terms_at(share)) {
                 *term = side.deviation * value;
             }
         }
@@ -79,25 +80,37 @@ fn covariance(one: f64, other: f64) -> f64 {
     0.5 * a * a * (3.0 * b - a)
 }
 
-/// The process at a share of the way, by three independent variables.
-fn terms_at(share: f64) -> [f64; COLUMNS] {
-    let place = |k: usize| (k + 1) as f64 / COLUMNS as f64;
-    let mut root = [[0.0; COLUMNS]; COLUMNS];
-    let mut terms = [0.0; COLUMNS];
-    for k in 0..COLUMNS {
-        let solve = |at: f64, root: &[[f64; COLUMNS]; COLUMNS], row: &[f64; COLUMNS]| {
-            let held: f64 = (0..k).map(|l| root[k][l] * row[l]).sum();
-            covariance(place(k), at) - held
-        };
-        for l in 0..k {
-            let held: f64 = (0..l).map(|m| root[k][m] * root[l][m]).sum();
-            root[k][l] = (covariance(place(k), place(l)) - held) / root[l][l];
+/// Root of the process' covariance at its three places.
+#[derive(Clone, Copy, Debug, Default)]
+struct Root([[f64; COLUMNS]; COLUMNS]);
+
+impl Root {
+    fn new() -> Self {
+        let mut root = Self::default();
+        for k in 0..COLUMNS {
+            let row = root.terms_at(place(k));
+            root.0[k] = row;
+            // Its own row is not there yet: what the places before it leave of its variance.
+            let held: f64 = row[..k].iter().map(|term| term * term).sum();
+            root.0[k][k] = (covariance(place(k), place(k)) - held).sqrt();
         }
-        let row = root[k];
-        root[k][k] = solve(place(k), &root, &row).sqrt();
-        terms[k] = solve(share, &root, &terms) / root[k][k];
+        root
     }
-    terms
+
+    /// The process at a share of the way, by independent variables, as many as there are rows.
+    fn terms_at(&self, share: f64) -> [f64; COLUMNS] {
+        let mut terms = [0.0; COLUMNS];
+        for (k, row) in self.0.iter().enumerate().take_while(|(k, row)| row[*k] > 0.0) {
+            let held: f64 = row[..k].iter().zip(&terms).map(|(one, other)| one * other).sum();
+            terms[k] = (covariance(place(k), share) - held) / row[k];
+        }
+        terms
+    }
+}
+
+/// Share of the way of each place.
+const fn place(k: usize) -> f64 {
+    (k + 1) as f64 / COLUMNS as f64
 }
 
 #[cfg(test)]
@@ -108,16 +121,18 @@ mod tests {
     /// cannot hold is small; before the first segment beyond there is nothing.
     #[test]
     fn three_places_hold_the_process() {
+        let root = Root::new();
         for step in 0..=100 {
             let share = f64::from(step) / 100.0;
-            let held: f64 = terms_at(share).iter().map(|term| term * term).sum();
+            let held: f64 = root.terms_at(share).iter().map(|term| term * term).sum();
             assert!(held <= share.powi(3) + 1e-12, "{share}: {held}");
             assert!(share.powi(3) - held < 0.003, "{share}: {held}");
         }
         for (one, other) in [(1.0 / 3.0, 1.0), (2.0 / 3.0, 0.5), (1.0, 0.8)] {
-            let product: f64 = terms_at(one).iter().zip(terms_at(other)).map(|(a, b)| a * b).sum();
+            let product: f64 =
+                root.terms_at(one).iter().zip(root.terms_at(other)).map(|(a, b)| a * b).sum();
             assert!((product - covariance(one, other)).abs() < 1e-9, "{one} {other}: {product}");
         }
-        assert!(terms_at(0.0).iter().all(|term| *term == 0.0));
+        assert!(root.terms_at(0.0).iter().all(|term| *term == 0.0));
     }
 }

@@ -11,6 +11,7 @@ fn prior_masses_sum_to_one() {
         effect_of: vec![0, 1, 1],
         ln_choices: vec![0.0, 2.0_f64.ln(), 2.0_f64.ln()],
         effects: 3,
+        age_of: vec![None; 2],
         held: vec![false; 2],
         rows: 10.0,
     };
@@ -69,6 +70,7 @@ fn evidence_against_numerical_integration() {
         effect_of: vec![0],
         ln_choices: vec![0.0],
         effects: 1,
+        age_of: vec![None],
         held: vec![false],
         rows,
     };
@@ -123,6 +125,7 @@ fn evidence_of_two_effects_against_numerical_integration() {
         effect_of: vec![0, 1],
         ln_choices: vec![0.0; 2],
         effects: 2,
+        age_of: vec![None; 2],
         held: vec![false; 2],
         rows,
     };

@@ -1,3 +1,5 @@
+use effects::Variable;
+
 use super::*;
 use crate::output::region::{Condition, Region};
 

@@ -30,6 +30,7 @@ fn same_as_one_pair_at_a_time() {
         effect_of: vec![0, 1, 2, 2],
         ln_choices: vec![0.0, 0.0, 2.0_f64.ln(), 2.0_f64.ln()],
         effects: 3,
+        age_of: vec![None; 3],
         held: vec![false; 3],
         rows: 60.0,
     };
@@ -107,6 +108,7 @@ fn a_pair_with_an_impossible_size_is_not_believed() {
         effect_of: vec![0, 1],
         ln_choices: vec![0.0; 2],
         effects: 2,
+        age_of: vec![None; 2],
         held: vec![false; 2],
         rows: 60.0,
     };
