@@ -100,7 +100,7 @@ deciding_numbers! {
             OurChoice "Where nothing changes, one tail in a hundred has so much between some of a hundred dates.";
         SURE_P_VALUE: f64 = 1e-12, "",
             "p-value of the gap below which it is told, whether or not a name fits it",
-            OurChoice "Of 233 taught and healthy fleets of two foreign simulators the smallest was 1e-9; of 48 that were ill and not told, 1e-10 to 1e-314.";
+            OurChoice "The smallest of 233 healthy fleets of two other simulators was 1e-9; ill ones had 1e-10 to 1e-314.";
         REFUTES_SCATTER: f64 = 0.01, "",
             "largest p-value of a place beside which scatter from flight to flight is not borne out",
             OurChoice "A place that one clean fleet in a hundred shows by chance; scatter has none.";

@@ -188,6 +188,31 @@ fn an_event_takes_the_change_that_it_explains() {
     assert!(found.events[3].effect_percent.is_none() && found.events[4].effect_percent.is_none());
 }
 
+/// 60 flights a year for two years, 2 % of wear a year, and three washes of 0.9 %, of which none is a change by itself: with their
+/// dates the trend is that between them, without them what wear and washes come to together. Planted; 40 series.
+#[test]
+fn a_trend_is_that_between_washes() {
+    let washes = [day(180), day(360), day(540)];
+    let (mut inside, mut sum, mut without) = (0, 0.0, 0.0);
+    for seed in 0..40 {
+        let flights = normal(9_200 + seed).zip(0..120).map(|(noise, k)| {
+            let at = 6 * k;
+            let washed = washes.iter().filter(|wash| **wash <= day(at)).count();
+            let percent = 2.0 * at as f64 / 365.25 - 0.9 * washed as f64 + 0.5 * noise;
+            FlightDeviation::of_segments(day(at), &[percent]).unwrap()
+        });
+        let series = Series::new(flights.collect()).unwrap();
+        let trend = |events: &[Timestamp]| history(&series, events).levels.trend_percent_per_year();
+        let with = trend(&washes);
+        inside += usize::from((with.value - 2.0).abs() < with.half_width95());
+        sum += with.value / 40.0;
+        without += trend(&[]).value / 40.0;
+    }
+    assert!(inside >= 34, "{inside} of 40");
+    assert!((sum - 2.0).abs() < 0.25, "{sum}");
+    assert!(without < 1.2, "{without}");
+}
+
 #[test]
 fn a_single_odd_flight_is_no_change() {
     let noise: Vec<f64> = normal(8).take(80).collect();

@@ -130,6 +130,14 @@ pub struct TailSummary {
     pub beyond_flights: Option<usize>,
 }
 
+impl TailSummary {
+    /// Whether the mean error of its flights lies beyond what the model states of it.
+    fn is_beyond_its_interval(&self) -> bool {
+        let mean = self.fuel_flow_error_percent.before.mean;
+        self.mean_error_within_percent.zip(mean).is_some_and(|(within, mean)| mean.abs() > within)
+    }
+}
+
 /// The error of the initial table, and of the final one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorsSummary {
@@ -198,6 +206,13 @@ impl Summary {
                     counted(tail.segments, "segment")
                 );
             }
+        }
+        for tail in self.tails.iter().filter(|tail| tail.is_beyond_its_interval()) {
+            let _ = writeln!(
+                text,
+                "{}: its mean error lies beyond that interval: it does not burn what the learnt flights burnt (diagnose, monitor).",
+                tail.tail
+            );
         }
         let lists = self.tails.iter().map(|tail| tail.not_evaluated.as_slice());
         let flights = self.tails.iter().map(|tail| tail.flights).sum();

@@ -10,6 +10,7 @@ use crate::judge::noise_floors::held_out_smooth;
 use crate::judge::posterior::{Posterior, id_of};
 use crate::judge::table::TableFinding;
 use crate::judge::verdict::{beside, closed, credit};
+use crate::library::Library;
 use crate::output::Gap;
 use crate::output::form::FoundForm;
 use crate::output::verdict::Closure;
@@ -101,13 +102,8 @@ pub(crate) fn detect(
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
     let taught = system.data.predictor.baseline.is_some();
-    // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights, or is more probable
-    // than not and nothing that a table in error could look like.
-    let beyond_table = top.filter(|top| !DRAG_OF_A_TABLE.contains(&id_of(library, top.effect)));
-    let is_named = beyond_table
-        .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
-    let announced = taught && !input.exceeds_uncertainty && !lies_at_an_engine && !is_sure;
-    let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
+    let is_surely_real = input.exceeds_uncertainty || lies_at_an_engine || is_sure;
+    let own_error = taught && !is_surely_real && is_own_error(library, input, outside);
     let is_outside = is_unnamed(outside, named);
     let leading =
         || leading_forms(problem, input.analysis, outside, (input.noise_scale, own.seed()));
@@ -118,8 +114,8 @@ pub(crate) fn detect(
         && (is_large(system, gap, top)
             || is_outside && is_large_form(forms.get_or_insert_with(leading)));
     let is_told = is_sure || is_scatter && has_a_place;
-    let is_vague = !is_told && is_vague(gap, outside, top, taught && makes_worse(unseen));
-    let stands_out = is_seen && !is_vague;
+    let stands_out =
+        is_seen && (is_told || !is_vague(gap, outside, top, taught && makes_worse(unseen)));
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
     // functions, and may be all of a large gap: the form that describes it is asked then.
@@ -134,6 +130,16 @@ pub(crate) fn detect(
     };
     let detected = input.is_real && (table.is_some() || (stands_out && is_borne_out));
     Detection { detected, table: table.filter(|_| detected), smooth_term, forms }
+}
+
+/// Whether a gap is what a taught model announces of its own errors: no name shrinks it on unseen flights, and none is more probable
+/// than not that is not what a table in error could look like.
+fn is_own_error(library: &Library, input: &DetectionInput<'_>, outside: &Outside) -> bool {
+    let top = input.posteriors.first();
+    let beyond_table = top.filter(|top| !DRAG_OF_A_TABLE.contains(&id_of(library, top.effect)));
+    let is_named = beyond_table
+        .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
+    !is_named && !closes_more_than(0.0, input.unseen)
 }
 
 /// Whether no name would be reported.

@@ -415,6 +415,13 @@ fn dated_steps_begin_on_their_date_and_know_drag_from_fuel_flow() {
     assert!((drag.ln_fuel_flow_total - plain.ln_fuel_flow_total - 1.03_f64.ln()).abs() < 1e-14);
     assert!((drag.ln_corrected_thrust - plain.ln_corrected_thrust - 1.03_f64.ln()).abs() < 1e-14);
     assert_eq!(step(at.date_s + 1.0, StepTarget::Drag), plain);
+    // Of one of two engines: half of it in all, thrust the same, and the engine apart from the other by 3 %.
+    let engine = step(at.date_s, StepTarget::Engine2);
+    assert!((engine.ln_fuel_flow_total - plain.ln_fuel_flow_total - 1.015_f64.ln()).abs() < 1e-14);
+    assert!((engine.ln_corrected_thrust - plain.ln_corrected_thrust).abs() < 1e-14);
+    let apart = |of: &Response| of.ln_fuel_flow_engine[1] - of.ln_fuel_flow_engine[0];
+    assert!((apart(&engine) - apart(&plain) - 1.03_f64.ln()).abs() < 1e-14);
+    assert_eq!(step(at.date_s + 1.0, StepTarget::Engine2), plain);
 }
 
 /// F/δ that N2 indicates is 1.3 references, pivot 0.9: ((1.3 − 0.9)/0.25)² = 2.56, at 0.5 % a factor of 1.0128.

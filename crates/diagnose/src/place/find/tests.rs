@@ -57,7 +57,8 @@ fn a_name_leads_unless_its_variable_does() {
     assert_eq!(led(&[&[Variable::Mass]], true), [Some(Variable::Mass)]);
 }
 
-/// A step replaces a bin of dates that leads, and no other place; what is not zero before is no step.
+/// A step replaces a bin of dates that leads, whatever second condition the bin has, and no other place; what is not zero before is
+/// no step.
 #[test]
 fn a_step_leads_with_its_own_date() {
     let led = |first: &[Variable], gap: &[f64]| {
@@ -68,7 +69,8 @@ fn a_step_leads_with_its_own_date() {
         found.of_gap(true)[0].segments
     };
     assert_eq!(led(&[Variable::Date], &[0.0, 0.0, 1.0, 1.1]), 2);
-    assert_eq!(led(&[Variable::Date, Variable::Mach], &[0.0, 0.0, 1.0, 1.1]), 7);
+    assert_eq!(led(&[Variable::Date, Variable::Mach], &[0.0, 0.0, 1.0, 1.1]), 2);
+    assert_eq!(led(&[Variable::Mach, Variable::Date], &[0.1, 0.2, 1.0, 1.1]), 7);
     assert_eq!(led(&[Variable::Date], &[0.1, 0.2, 1.0, 1.1]), 7);
     assert_eq!(led(&[Variable::Date], &[0.0, 1.0, 0.0, 1.1]), 7);
 }

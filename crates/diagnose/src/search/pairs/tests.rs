@@ -1,3 +1,5 @@
+use flight::effect::EffectGroup;
+
 use super::*;
 use crate::hypotheses::evidence::Prior;
 use crate::math::mixture::Mixture;
@@ -123,4 +125,35 @@ fn a_pair_with_an_impossible_size_is_not_believed() {
     assert!(is_possible(&scorer, &with([-18.0, 2.4])));
     assert!(!is_possible(&scorer, &with([-22.0, 1.0])));
     assert!(!is_possible(&scorer, &with([1.0, 2.6])));
+}
+
+/// Two slopes of one part are one effect; of two parts, one against the other, a step: −4.7 and +4.6 % a year from dates a year apart
+/// are 4.65 % at once.
+#[test]
+fn two_slopes_make_no_step() {
+    let prior = Prior { mean: 0.0, scales: [(1.2, 0.0); 3], count: 1, sign: EffectSign::Positive };
+    let of = |parts: [Option<EffectGroup>; 2]| Scorer {
+        priors: vec![prior; 2],
+        effect_of: vec![0, 1],
+        ln_choices: vec![0.0; 2],
+        effects: 2,
+        age_of: parts.to_vec(),
+        held: vec![false; 2],
+        rows: 60.0,
+    };
+    let sized = |sizes: [f64; 2]| ScoredHypothesis {
+        hypothesis: Hypothesis { columns: vec![0, 1], flight_scatter_percent: None },
+        ln_weight: 0.0,
+        sizes: sizes.to_vec(),
+        deviations: vec![0.1; 2],
+        background: 0,
+        table_share: 0.0,
+    };
+    let (airframe, engine) = (Some(EffectGroup::Airframe), Some(EffectGroup::Engine));
+    assert!(of([airframe, airframe]).is_one_history(0, 1));
+    assert!(!of([airframe, engine]).is_one_history(0, 1));
+    assert!(!of([None, None]).is_one_history(0, 1));
+    assert!(is_possible(&of([airframe, engine]), &sized([1.0, 0.8])));
+    assert!(!is_possible(&of([airframe, engine]), &sized([-4.7, 4.6])));
+    assert!(is_possible(&of([airframe, None]), &sized([-4.7, 4.6])));
 }
