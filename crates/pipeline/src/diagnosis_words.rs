@@ -158,7 +158,10 @@ pub fn phrase(diagnosis: &Diagnosis, id: EffectId, size: f64) -> String {
     });
     engine.map_or_else(
         || id.phrase(size),
-        |engine| format!("{} of engine {engine} alone, or of its meter", id.phrase(size)),
+        |engine| {
+            let step = id.phrase(size);
+            format!("fuel flow of engine {engine} alone, or what its meter says, takes {step}")
+        },
     )
 }
 
