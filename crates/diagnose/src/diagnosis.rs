@@ -28,6 +28,7 @@ use crate::output::note::{LeftOutReason, Note};
 use crate::output::verdict::{Insufficient, Verdict};
 use crate::output::{Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::{FoundPlaces, find};
+use crate::place::named::NamedGap;
 use crate::priors::PRIOR_SCALES;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
@@ -315,13 +316,14 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let led = |places| led_by_name(places, &findings, system, &verdict, options.seed);
-    let places = places.map_or_else(Vec::new, |places| led(places).of_gap(detected));
     let found_forms = match &verdict {
         Verdict::OutsideLibrary(_) => forms
             .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),
         _ => vec![],
     };
+    let named = (&verdict, &found_forms[..]);
+    let led = |places| led_by_name(places, &findings, system, named, options.seed);
+    let places = places.map_or_else(Vec::new, |places| led(places).of_gap(detected));
     Ok(Diagnosis {
         flights: system.data.flights.len(),
         segments: system.data.segments.len(),
@@ -360,18 +362,23 @@ fn named_addition(
         .filter(|_| !named.is_empty() && !verdict.is_of_table())
 }
 
-/// The places, that of what the verdict names first where it has one.
+/// The places, that of what the verdict names first where it has one; where nothing has one, that of the form which describes the gap.
 fn led_by_name(
     mut places: FoundPlaces,
     findings: &Findings<'_>,
     system: &WhitenedSystem<'_>,
-    verdict: &Verdict,
+    (verdict, forms): (&Verdict, &[FoundForm]),
     seed: u64,
 ) -> FoundPlaces {
-    if let Some(named) = named_gap(findings, system, verdict)
-        && let Some(place) = named.place(system, &places.variances, seed)
+    if let Some(named) = named_gap(findings, system, verdict) {
+        if let Some(place) = named.place(system, &places.variances, seed) {
+            places.lead_with(place, &named);
+        }
+    } else if places.are_none()
+        && let Some(described) = NamedGap::of_forms(forms, system)
+        && let Some(place) = described.place(system, &places.variances, seed)
     {
-        places.lead_with(place, &named);
+        places.say(place);
     }
     places
 }

@@ -67,6 +67,16 @@ impl FoundPlaces {
         }
     }
 
+    /// Whether nothing stands out.
+    pub(crate) const fn are_none(&self) -> bool {
+        self.regions.is_empty()
+    }
+
+    /// Says one more place, last.
+    pub(crate) fn say(&mut self, place: Slice) {
+        self.regions.push(place);
+    }
+
     /// What is said of a gap: its places, everywhere where it has none. Nothing is said of what is no gap.
     pub(crate) fn of_gap(self, is_gap: bool) -> Vec<Slice> {
         if !is_gap {

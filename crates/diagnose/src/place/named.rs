@@ -3,16 +3,20 @@
 //! Steps over regions see fuel flow alone. A name is found in all channels and against all that is uncertain about the model, so
 //! that it may be certain where no step stands out.
 
-use effects::Variable;
+use effects::{Form, Variable};
 
 use crate::output::Slice;
+use crate::output::form::FoundForm;
 use crate::output::region::{Condition, Edge};
+use crate::output::verdict::Closure;
 use crate::place::binned_variable::{BinnedVariable, places};
 use crate::place::regions::{BinnedRegion, intervals};
 use crate::place::told::{Told, gaps};
+use crate::residuals::rows::SegmentRow;
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
-    FEWEST_FLIGHTS_OF_A_REGION, LEVEL_LIKE, REGION_P_VALUE, REGION_SHARES, SMALLEST_GAP_PERCENT,
+    FEWEST_FLIGHTS_OF_A_REGION, LEAST_OF_A_FORM, LEVEL_LIKE, REGION_P_VALUE, REGION_SHARES,
+    SMALLEST_GAP_PERCENT,
 };
 
 /// Falls of squares that differ by less are of one place and its complement.
@@ -38,6 +42,29 @@ struct Fit {
 }
 
 impl NamedGap {
+    /// The same of the form that describes a gap best, where it surely closes more than half of it on unseen flights: driven by its
+    /// variable, but for the probability of forms over others. `None` for a level and for a product.
+    pub(crate) fn of_forms(forms: &[FoundForm], system: &WhitenedSystem<'_>) -> Option<Self> {
+        let best = forms.first().filter(|best| best.closure.is_some_and(is_borne_out))?;
+        if matches!(best.form, Form::Offset | Form::Product { .. }) {
+            return None;
+        }
+        let value = |row: &SegmentRow| {
+            let x = best.variable.value(&row.point, &row.response, system.design.references())?;
+            Some(best.form.value(x, best.scale, 0.0))
+        };
+        let mut gap = system.data.segments.iter().map(value).collect::<Option<Vec<f64>>>()?;
+        // Of drag or of fuel flow: as much as it makes of fuel flow.
+        let square = gap.iter().map(|shape| shape * shape).sum::<f64>() / gap.len().max(1) as f64;
+        let size = (0.01 * best.rms_percent / square.sqrt()).copysign(best.size);
+        for value in &mut gap {
+            *value *= size;
+        }
+        let of_variable = forms.iter().filter(|form| form.variable == best.variable);
+        let certain: f64 = of_variable.map(|form| form.probability).sum();
+        Some(Self { gap, drivers: vec![(best.variable, (1.0 - certain).max(0.0))] })
+    }
+
     /// The region of one driving variable over which a step fits the gap of what is named best, of regions that fit alike the one
     /// with the larger gap; its p-value is the probability that nothing acts which the variable drives. `None` where that is too
     /// large for every variable, and where the gap of what is named is nearly the same everywhere.
@@ -135,6 +162,10 @@ impl NamedGap {
         let size = told.mean(&region, &members).abs();
         Some(Fit { region, members, fall, size, p_value })
     }
+}
+
+fn is_borne_out(closure: Closure) -> bool {
+    closure.ci95[0] > LEAST_OF_A_FORM
 }
 
 impl Fit {
