@@ -316,11 +316,8 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let found_forms = match &verdict {
-        Verdict::OutsideLibrary(_) => forms
-            .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),
-        _ => vec![],
-    };
+    let leading = || leading_forms(problem, analysis, &outside, (scale, options.seed));
+    let found_forms = told_forms(&verdict, forms, leading);
     let named = (&verdict, &found_forms[..]);
     let led = |places| led_by_name(places, &findings, system, named, options.seed);
     let places = places.map_or_else(Vec::new, |places| led(places).of_gap(detected));
@@ -341,6 +338,18 @@ fn conclude(
         outliers: vec![],
         notes: vec![],
     })
+}
+
+/// Forms that describe a gap without a name, as they were found for the decision already or else now.
+fn told_forms(
+    verdict: &Verdict,
+    found: Option<Vec<FoundForm>>,
+    leading: impl FnOnce() -> Vec<FoundForm>,
+) -> Vec<FoundForm> {
+    match verdict {
+        Verdict::OutsideLibrary(_) => found.unwrap_or_else(leading),
+        _ => vec![],
+    }
 }
 
 /// How far effects are apart, each by the hidden parameter that leads.
