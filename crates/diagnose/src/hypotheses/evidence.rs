@@ -143,8 +143,13 @@ impl Scorer {
     /// Whether two columns are ageing and history of one part: a history whose falls take nothing back is ageing, and both
     /// together, one against the other, are a step.
     pub(crate) fn is_one_history(&self, one: usize, other: usize) -> bool {
-        let part = |column: usize| self.age_of[self.effect_of[column]];
-        part(one).is_some() && part(one) == part(other)
+        let part = self.part_that_ages(one);
+        part.is_some() && part == self.part_that_ages(other)
+    }
+
+    /// The part that gets worse with age by the effect of a column.
+    pub(crate) fn part_that_ages(&self, column: usize) -> Option<EffectGroup> {
+        self.age_of[self.effect_of[column]]
     }
 
     pub(crate) fn power(&self) -> f64 {

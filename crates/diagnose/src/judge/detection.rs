@@ -161,7 +161,7 @@ fn is_large_form(forms: &[FoundForm]) -> bool {
 
 /// Whether a form surely closes more than half of the gap on flights that its parameters have not seen.
 fn bears_out(closure: Option<Closure>) -> bool {
-    closure.is_some_and(|closure| closure.ci95[0] > LEAST_OF_A_FORM)
+    closure.is_some_and(|closure| closure.is_surely_more_than(LEAST_OF_A_FORM))
 }
 
 /// A guide's table with less probability where a table that was fitted to other flights may close less than half of the gap:

@@ -126,6 +126,13 @@ pub struct Closure {
     pub ci95: [f64; 2],
 }
 
+impl Closure {
+    /// Whether it is surely more than a share: the lower end of its interval decides.
+    pub(crate) const fn is_surely_more_than(&self, share: f64) -> bool {
+        self.ci95[0] > share
+    }
+}
+
 impl Verdict {
     /// What was found, where effects explain the gap.
     #[must_use]

@@ -8,7 +8,6 @@ use effects::{Form, Variable};
 use crate::output::Slice;
 use crate::output::form::FoundForm;
 use crate::output::region::{Condition, Edge};
-use crate::output::verdict::Closure;
 use crate::place::binned_variable::{BinnedVariable, places};
 use crate::place::regions::{BinnedRegion, intervals};
 use crate::place::told::{Told, gaps};
@@ -45,7 +44,8 @@ impl NamedGap {
     /// The same of the form that describes a gap best, where it surely closes more than half of it on unseen flights: driven by its
     /// variable, but for the probability of forms over others. `None` for a level and for a product.
     pub(crate) fn of_forms(forms: &[FoundForm], system: &WhitenedSystem<'_>) -> Option<Self> {
-        let best = forms.first().filter(|best| best.closure.is_some_and(is_borne_out))?;
+        let best = forms.first()?;
+        best.closure.filter(|closure| closure.is_surely_more_than(LEAST_OF_A_FORM))?;
         if matches!(best.form, Form::Offset | Form::Product { .. }) {
             return None;
         }
@@ -162,10 +162,6 @@ impl NamedGap {
         let size = told.mean(&region, &members).abs();
         Some(Fit { region, members, fall, size, p_value })
     }
-}
-
-fn is_borne_out(closure: Closure) -> bool {
-    closure.ci95[0] > LEAST_OF_A_FORM
 }
 
 impl Fit {

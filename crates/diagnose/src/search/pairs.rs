@@ -112,7 +112,7 @@ pub(crate) fn search(
 /// worse: two slopes of different dates, one against the other, are a step, which is an effect of its own.
 fn is_possible(scorer: &Scorer, scored: &ScoredHypothesis) -> bool {
     let columns = &scored.hypothesis.columns;
-    let is_of_age = columns.iter().all(|&column| scorer.age_of[scorer.effect_of[column]].is_some());
+    let is_of_age = columns.iter().all(|&column| scorer.part_that_ages(column).is_some());
     if is_of_age && scored.sizes.iter().product::<f64>() < 0.0 {
         return false;
     }

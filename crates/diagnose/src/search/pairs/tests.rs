@@ -95,6 +95,30 @@ fn same_as_one_pair_at_a_time() {
     assert_eq!(search(&scorer, &backgrounds, Context { best, ..context }).len(), found.len());
 }
 
+/// Two effects of a column each, and the parts that get worse with age by them.
+fn scorer_of_two(priors: [Prior; 2], age_of: [Option<EffectGroup>; 2]) -> Scorer {
+    Scorer {
+        priors: priors.to_vec(),
+        effect_of: vec![0, 1],
+        ln_choices: vec![0.0; 2],
+        effects: 2,
+        age_of: age_of.to_vec(),
+        held: vec![false; 2],
+        rows: 60.0,
+    }
+}
+
+fn pair_of_sizes(sizes: [f64; 2]) -> ScoredHypothesis {
+    ScoredHypothesis {
+        hypothesis: Hypothesis { columns: vec![0, 1], flight_scatter_percent: None },
+        ln_weight: 0.0,
+        sizes: sizes.to_vec(),
+        deviations: vec![0.1; 2],
+        background: 0,
+        table_share: 0.0,
+    }
+}
+
 /// By hand: eleven typical sizes of one of two are more than ten, nine are not; of a known coefficient, mean 1 and deviation
 /// 0.15, 2.4 is within ten deviations.
 #[test]
@@ -105,23 +129,8 @@ fn a_pair_with_an_impossible_size_is_not_believed() {
         count: 1,
         sign: EffectSign::Either,
     };
-    let scorer = Scorer {
-        priors: vec![of(0.0, 2.0), of(1.0, 0.15)],
-        effect_of: vec![0, 1],
-        ln_choices: vec![0.0; 2],
-        effects: 2,
-        age_of: vec![None; 2],
-        held: vec![false; 2],
-        rows: 60.0,
-    };
-    let with = |sizes: [f64; 2]| ScoredHypothesis {
-        hypothesis: Hypothesis { columns: vec![0, 1], flight_scatter_percent: None },
-        ln_weight: 0.0,
-        sizes: sizes.to_vec(),
-        deviations: vec![0.1; 2],
-        background: 0,
-        table_share: 0.0,
-    };
+    let scorer = scorer_of_two([of(0.0, 2.0), of(1.0, 0.15)], [None; 2]);
+    let with = pair_of_sizes;
     assert!(is_possible(&scorer, &with([-18.0, 2.4])));
     assert!(!is_possible(&scorer, &with([-22.0, 1.0])));
     assert!(!is_possible(&scorer, &with([1.0, 2.6])));
@@ -132,23 +141,8 @@ fn a_pair_with_an_impossible_size_is_not_believed() {
 #[test]
 fn two_slopes_make_no_step() {
     let prior = Prior { mean: 0.0, scales: [(1.2, 0.0); 3], count: 1, sign: EffectSign::Positive };
-    let of = |parts: [Option<EffectGroup>; 2]| Scorer {
-        priors: vec![prior; 2],
-        effect_of: vec![0, 1],
-        ln_choices: vec![0.0; 2],
-        effects: 2,
-        age_of: parts.to_vec(),
-        held: vec![false; 2],
-        rows: 60.0,
-    };
-    let sized = |sizes: [f64; 2]| ScoredHypothesis {
-        hypothesis: Hypothesis { columns: vec![0, 1], flight_scatter_percent: None },
-        ln_weight: 0.0,
-        sizes: sizes.to_vec(),
-        deviations: vec![0.1; 2],
-        background: 0,
-        table_share: 0.0,
-    };
+    let of = |parts: [Option<EffectGroup>; 2]| scorer_of_two([prior; 2], parts);
+    let sized = pair_of_sizes;
     let (airframe, engine) = (Some(EffectGroup::Airframe), Some(EffectGroup::Engine));
     assert!(of([airframe, airframe]).is_one_history(0, 1));
     assert!(!of([airframe, engine]).is_one_history(0, 1));
