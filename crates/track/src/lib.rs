@@ -5,7 +5,8 @@
 //! those are listed in [`Track::dropped_runs`].
 //!
 //! The one design decision: rates are taken before anything is discarded. A forward difference belongs to the start of
-//! its step, so the last kept sample of a stable piece still has the true rate of the step that follows it.
+//! its step, so the last kept sample of a stable piece still has the true rate of the step that follows it. The
+//! acceleration of an averaged bin is the rate at the bin's own mean time instead, which is that of its fuel flow.
 //!
 //! Limits: a step above 1.5 Δt ends a run, Δt being the median step. A recording with Δt below 59 s is averaged into
 //! bins of 60 s ([`bins`]); one with Δt above 90 s is refused, because its neighbors do not indicate steadiness. Static
@@ -78,7 +79,7 @@ pub const RUN_SAMPLES_MINIMUM: usize = 3;
 /// and where averaging leaves fewer than three bins.
 ///
 /// # Source
-/// `[steadiness.1]` to `[steadiness.6]`; Ghazi et al. 2020, eqs. (16) to (18).
+/// `[steadiness.1]` to `[steadiness.7]` and `[steadiness.15]`; Ghazi et al. 2020, eqs. (16) to (18).
 pub fn derive(report: Report) -> Result<Track, TrackError> {
     let recorded_interval_s = interval::median_step_s(&report.columns().time_s);
     interval::check_interval(recorded_interval_s)?;
@@ -101,7 +102,11 @@ pub fn derive(report: Report) -> Result<Track, TrackError> {
     let (static_air_temperature_k, temperature_source) =
         temperature::static_air_temperature_k(&report)?;
     let mass_kg = mass::gross_mass_kg(&report);
-    let (runs, dropped_runs) = runs(&report, pieces);
+    let acceleration = match sampling {
+        Sampling::AveragedToBins { .. } => rate::at_own_times,
+        Sampling::AsSent | Sampling::AveragedPoints { .. } => rate::along_run,
+    };
+    let (runs, dropped_runs) = runs(&report, pieces, acceleration);
     let parts = TrackParts {
         report,
         sampling,
@@ -116,7 +121,11 @@ pub fn derive(report: Report) -> Result<Track, TrackError> {
 }
 
 /// Rates along each piece that is long enough for them; the others with their reason.
-fn runs(report: &Report, pieces: Vec<Range<usize>>) -> (Vec<SampleRun>, Vec<DroppedRun>) {
+fn runs(
+    report: &Report,
+    pieces: Vec<Range<usize>>,
+    acceleration: fn(&[f64], &[f64]) -> Vec<f64>,
+) -> (Vec<SampleRun>, Vec<DroppedRun>) {
     let columns = report.columns();
     let (mut runs, mut dropped) = (Vec::new(), Vec::new());
     for samples in pieces {
@@ -128,8 +137,12 @@ fn runs(report: &Report, pieces: Vec<Range<usize>>) -> (Vec<SampleRun>, Vec<Drop
         let time_s = &columns.time_s[samples.clone()];
         let rate_of = |column: &[f64]| rate::along_run(time_s, &column[samples.clone()]);
         runs.push(SampleRun {
-            acceleration_m_s2: rate_of(&columns.ground_speed_m_s),
-            vertical_speed_m_s: rate_of(&columns.pressure_altitude_m),
+            acceleration_m_s2: acceleration(time_s, &columns.ground_speed_m_s[samples.clone()]),
+            // A trim criterion looks at it: which samples are steady does not depend on how acceleration is taken.
+            vertical_speed_m_s: rate::along_run(
+                time_s,
+                &columns.pressure_altitude_m[samples.clone()],
+            ),
             samples,
         });
     }

@@ -1,6 +1,6 @@
-//! Rates along a run: forward differences, and an extrapolated rate at the last sample.
+//! Rates along a run: forward differences, with an extrapolated rate at the last sample, or rates at the samples' own times.
 
-/// Number of rates through which the line at the end of a run is fitted.
+/// Number of rates through which the line at an end of a run is fitted.
 const END_FIT_RATES: usize = 3;
 
 /// Rate of a column at each sample of a run, in the column's unit per second.
@@ -32,6 +32,41 @@ pub(crate) fn along_run(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     rates
 }
 
+/// Rate of a column at each sample's own time, in the column's unit per second.
+///
+/// ```text
+/// r_{i+½} = (x_{i+1} − x_i)/(t_{i+1} − t_i) at t_{i+½} = ½(t_i + t_{i+1})
+/// r_i = (h_i r_{i−½} + h_{i−1} r_{i+½})/(h_{i−1} + h_i),  h_i = t_{i+1} − t_i,  1 < i < N
+/// ```
+///
+/// The second line is the straight line through the two rates around a sample, at its time; at regular steps it is their
+/// mean. The first and the last sample have the value at their time of the straight line by least squares through the
+/// nearest three rates (two where N = 3). All of it is exact where the column is a parabola in time.
+///
+/// A sample that is a mean over a bin is compared with fuel flow over the same bin: half a step later it would be
+/// another acceleration, and fuel flow would seem to depend on whatever moves with speed.
+///
+/// Both slices have the run's length, at least three; time strictly increases.
+///
+/// # Source
+/// `[steadiness.15]`, our choice.
+pub(crate) fn at_own_times(time_s: &[f64], values: &[f64]) -> Vec<f64> {
+    let last = values.len() - 1;
+    let steps = || time_s.windows(2).zip(values.windows(2));
+    let rates: Vec<f64> =
+        steps().map(|(time, value)| (value[1] - value[0]) / (time[1] - time[0])).collect();
+    let middles_s: Vec<f64> = steps().map(|(time, _)| 0.5 * (time[0] + time[1])).collect();
+    let fitted = END_FIT_RATES.min(last);
+    let mut own = Vec::with_capacity(values.len());
+    own.push(line_at(time_s[0], &middles_s[..fitted], &rates[..fitted]));
+    for (time, rate) in time_s.windows(3).zip(rates.windows(2)) {
+        let (before_s, behind_s) = (time[1] - time[0], time[2] - time[1]);
+        own.push((behind_s * rate[0] + before_s * rate[1]) / (before_s + behind_s));
+    }
+    own.push(line_at(time_s[last], &middles_s[last - fitted..], &rates[last - fitted..]));
+    own
+}
+
 /// Value at `x` of the straight line fitted by least squares through the points.
 fn line_at(x: f64, xs: &[f64], ys: &[f64]) -> f64 {
     let count = xs.len() as f64;
@@ -50,10 +85,35 @@ mod tests {
     use super::*;
 
     fn check(time_s: &[f64], values: &[f64], expected: &[f64]) {
-        let rates = along_run(time_s, values);
+        close(&along_run(time_s, values), expected);
+    }
+
+    fn close(rates: &[f64], expected: &[f64]) {
         assert_eq!(rates.len(), expected.len());
         for (rate, expected) in rates.iter().zip(expected) {
             assert!((rate - expected).abs() < 1e-12, "{rates:?}");
+        }
+    }
+
+    /// By hand: rates 1, 2, 4 per second at 30, 90, 150 s. In between their means 3/2 and 3; the line by least squares is
+    /// 7/3 + 3/2 · (t − 90)/60: at 0 s 7/3 − 9/4 = 1/12, at 180 s 7/3 + 9/4 = 55/12.
+    #[test]
+    fn rates_at_the_own_times_of_four_regular_samples() {
+        let rates = at_own_times(&[0.0, 60.0, 120.0, 180.0], &[0.0, 60.0, 180.0, 420.0]);
+        close(&rates, &[1.0 / 12.0, 1.5, 3.0, 55.0 / 12.0]);
+    }
+
+    /// Oracle: the derivative of t² is 2 t, at steps of any length, in the middle and at both ends.
+    #[test]
+    fn rates_at_own_times_are_exact_of_a_parabola() {
+        for time_s in [
+            vec![0.0, 40.0, 100.0],
+            vec![0.0, 60.0, 110.0, 170.0],
+            vec![-30.0, 0.0, 60.0, 125.0, 170.0, 240.0],
+        ] {
+            let of =
+                |value: &dyn Fn(f64) -> f64| time_s.iter().map(|t| value(*t)).collect::<Vec<_>>();
+            close(&at_own_times(&time_s, &of(&|t| t * t)), &of(&|t| 2.0 * t));
         }
     }
 

@@ -209,6 +209,35 @@ fn one_hertz_is_averaged_to_minutes() {
 fn incomplete_bins_are_dropped_and_counted() {
     // 200 s: the last bin holds 20 of 60 samples.
     let track = track(columns(every(1.0, 200)));
+/// Oracle: the derivative of V = 230 + 3 sin ωt, one turn an hour, at the mean time of each bin. Differences over two steps of
+/// 60 s are within (ωh)²/6 = 0.2 % of the largest acceleration, the lines at both ends within 0.8 (ωh)² = 0.9 %; forward
+/// differences lie 30 s late, 2 sin(½ ωh) = 5 %.
+#[test]
+fn acceleration_of_a_bin_is_that_of_its_own_minute() {
+    let turn_s = 3600.0;
+    let omega = core::f64::consts::TAU / turn_s;
+    let mut sent = columns(every(1.0, 5400));
+    let speed = |t: &f64| 230.0 + 3.0 * (omega * t).sin();
+    sent.ground_speed_m_s = sent.time_s.iter().map(speed).collect();
+    let altitude = |t: &f64| 12_000.0 + 3.0 * (omega * t).sin();
+    sent.pressure_altitude_m = sent.time_s.iter().map(altitude).collect();
+    let track = track(sent);
+    let time_s = &track.report().columns().time_s;
+    let run = &track.runs()[0];
+    let largest = 3.0 * omega;
+    let worst = |rates: &[f64], late_s: f64| {
+        let errors = time_s.iter().zip(rates);
+        let errors = errors.map(|(t, rate)| rate - largest * (omega * (t + late_s)).cos());
+        errors.fold(0.0_f64, |worst, error| worst.max(error.abs())) / largest
+    };
+    let found = worst(&run.acceleration_m_s2, 0.0);
+    assert!(found < 0.01, "{found}");
+    // Vertical speed, of which the same sine is made, stays the forward difference: half a step late.
+    let of_climb = worst(&run.vertical_speed_m_s, 0.0);
+    assert!((0.04..0.06).contains(&of_climb), "{of_climb}");
+    assert!(worst(&run.vertical_speed_m_s[..89], 30.0) < 0.01);
+}
+
     close(&track.report().columns().time_s, &[29.5, 89.5, 149.5]);
     assert!(matches!(track.sampling(), Sampling::AveragedToBins { incomplete_bins: 1, .. }));
 
