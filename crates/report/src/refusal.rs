@@ -214,6 +214,13 @@ pub enum RefusalKind {
         tolerance: f64,
         /// The unit of both.
         unit: &'static str,
+        /// The time without a row before it, where that is long enough for another flight to have begun, s.
+        gap_s: Option<f64>,
+    },
+    /// Fuel flow that would be integrated over a time without a row in which another flight may have begun.
+    FlowOverGap {
+        /// The longest such time within a flight, s.
+        longest_s: f64,
     },
     /// A mass at or below zero.
     MassNotPositive {

@@ -186,16 +186,63 @@ fn a_mass_that_rises_for_good_is_refused() {
     let refusal = refused(&lenient, &text);
     assert!(refusal.starts_with("line 62,") && !refusal.contains("new_flight"), "{refusal}");
     // Behind a gap it is another flight.
-    let mut later = String::new();
+    let refusal = refused(&lenient, &later(&text, 60, 3000));
+    assert!(refusal.contains("3001 s without a row"), "{refusal}");
+    assert!(refusal.contains("new_flight_after_s"), "{refusal}");
+}
+
+/// Rows behind the first `place` ones are so many seconds later.
+fn later(text: &str, place: usize, seconds: usize) -> String {
+    let mut shifted = String::new();
     for (row, line) in text.lines().enumerate() {
         let (time, rest) = line.split_once(',').unwrap_or_default();
         match time.parse::<usize>() {
-            Ok(seconds) if row > 60 => drop(writeln!(later, "{},{rest}", seconds + 3000)),
-            _ => drop(writeln!(later, "{line}")),
+            Ok(time) if row > place => drop(writeln!(shifted, "{},{rest}", time + seconds)),
+            _ => drop(writeln!(shifted, "{line}")),
         }
     }
-    let refusal = refused(&lenient, &later);
-    assert!(refusal.contains("3001 s without a row"), "{refusal}");
+    shifted
+}
+
+/// By hand: flow is never integrated over the hours between two flights of one number, 3600 kg/h over 79 901 s would be 79.9 t.
+#[test]
+fn a_start_mass_does_not_reach_over_the_gap_between_two_flights() {
+    let start = mapping(SECONDS, START, "");
+    let refusal = refused(&start, &later(&cruise(&[]), 50, 79_900));
+    assert_eq!(
+        refusal,
+        "line 52, column 1: found 79901 s, expected no more than 10800 s without a row where fuel flow is integrated \
+         from a start mass: another flight? new_flight_after_s in the mapping divides them"
+    );
+    // Three hours are within a flight, and more where the mapping says so: one kilogram a second.
+    let heavy = "StartMass(gross_weight: Value(90000, \"kg\"))";
+    let parsed = read(&mapping(SECONDS, heavy, ""), &later(&cruise(&[]), 50, 10_799));
+    close(masses_kg(&parsed).1, 99.0 + 10_799.0);
+    let long = mapping(SECONDS, heavy, "new_flight_after_s: 80000,");
+    close(masses_kg(&read(&long, &later(&cruise(&[]), 50, 79_900))).1, 99.0 + 79_900.0);
+    // Before an engine burns anything the start mass is still that: systems may be switched on hours before.
+    let flows = ["0", "0", "600", "600", "600", "600", "600", "600", "600"];
+    let early = climb_and_cruise(flows, flows);
+    let of_start = mapping(SECONDS, START, CRUISE);
+    let (first_kg, used_kg) = masses_kg(&read(&of_start, &early));
+    close(first_kg, 10_000.0 - 2.0 * (5.0 + 30.0));
+    assert_eq!(masses_kg(&read(&of_start, &later(&early, 1, 20_000))), (first_kg, used_kg));
+    assert!(refused(&of_start, &later(&early, 3, 20_000)).contains("new_flight_after_s"));
+    // Behind the last row that is used nothing has to be known.
+    let parked = early + "40000,500,-56.5,0.78,447,10,0,0,8990\n";
+    assert_eq!(masses_kg(&read(&of_start, &parked)), (first_kg, used_kg));
+}
+
+/// A counter that begins again behind such a gap points to it too.
+#[test]
+fn a_counter_that_begins_again_behind_a_gap_is_another_flight() {
+    let counter = "FuelUsed(column: \"gw\", unit: \"kg\", zero_fuel_weight: (5000, \"kg\"), fuel_on_board: (3000, \"kg\"))";
+    let used: Vec<String> = (0..100).map(|second| (200 + second % 50).to_string()).collect();
+    let used: Vec<(usize, &str)> = used.iter().map(String::as_str).enumerate().collect();
+    let refusal = refused(&mapping(SECONDS, counter, ""), &cruise(&used));
+    assert!(refusal.starts_with("line 52,") && !refusal.contains("new_flight"), "{refusal}");
+    let refusal = refused(&mapping(SECONDS, counter, ""), &later(&cruise(&used), 50, 79_900));
+    assert!(refusal.contains("79901 s without a row come before it: another flight?"), "{refusal}");
     assert!(refusal.contains("new_flight_after_s"), "{refusal}");
 }
 

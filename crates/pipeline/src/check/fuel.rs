@@ -20,6 +20,9 @@ const ASYMMETRY_SHARE: f64 = 0.05;
 /// Rotor speeds that are called the same, % of rated speed.
 const SAME_ROTOR_SPEED_PERCENT: f64 = 0.6;
 
+/// The longest gap within a flight, s: as in a mapping that states none. What is burnt over a longer one nobody recorded.
+const LONGEST_GAP_S: f64 = 10_800.0;
+
 /// Code of the finding that fuel used and fuel flow do not add up.
 pub(super) const USED_AGAINST_FLOW: &str = "fuel-used-against-flow";
 
@@ -64,7 +67,19 @@ fn used_against_flow(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
     })
 }
 
+/// The longest time without a sample, where it is no gap within a flight: when it begins and how long it is, s.
+fn gap_between_flights_s(time_s: &[f64]) -> Option<(f64, f64)> {
+    let gaps = time_s.windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
+    gaps.max_by(|one, other| one.1.total_cmp(&other.1)).filter(|(_, gap_s)| *gap_s > LONGEST_GAP_S)
+}
+
 fn explain(ratio: f64, report: &Report) -> (String, String) {
+    if let Some((from_s, gap_s)) = gap_between_flights_s(&report.columns().time_s) {
+        return (
+            format!("a gap of {gap_s:.0} s from {from_s:.0} s on: two flights of one number?"),
+            "new_flight_after_s in the mapping, or one report for each flight".to_owned(),
+        );
+    }
     if ratio.abs() < 0.02 {
         return (
             "FU does not count: it is constant, or it is not fuel used".to_owned(),
@@ -223,4 +238,29 @@ fn rotor_difference(report: &Report, engine: usize) -> Option<(f64, &'static str
         (n2.iter().map(|values| mean(values.iter().copied())).collect::<Option<Vec<_>>>()?, "N2")
     };
     Some((means[engine] - mean(means.iter().copied())?, rotor))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two hours of 1000 kg/h on each side of a gap: with one of 20 hours the integral is 24 t, and 4 t were used.
+    #[test]
+    fn a_gap_between_two_flights_is_named_as_the_cause() {
+        let mut columns = test_support::reports::steady(60.0, 242);
+        columns.fuel_flow = FuelFlowColumns::Total(vec![1000.0 / 3600.0; 242]);
+        columns.fuel_used_kg = columns.time_s.iter().map(|time_s| time_s / 3.6 / 3.0).collect();
+        let cause = |gap_s: f64| {
+            let mut columns = columns.clone();
+            columns.time_s[121..].iter_mut().for_each(|time_s| *time_s += gap_s - 60.0);
+            let report = Report::new(test_support::reports::header(), columns).unwrap();
+            let flow_kg_s = report.columns().fuel_flow.totals_kg_s();
+            let draft = used_against_flow(&report, &flow_kg_s).unwrap();
+            (draft.likely_cause, draft.remedy)
+        };
+        let (found, remedy) = cause(72_000.0);
+        assert_eq!(found, "a gap of 72000 s from 7200 s on: two flights of one number?");
+        assert!(remedy.starts_with("new_flight_after_s"), "{remedy}");
+        assert!(!cause(10_800.0).0.contains("gap"));
+    }
 }

@@ -203,6 +203,7 @@ impl Series {
                 largest: self.largest_fuel_used,
                 tolerance: self.fuel_used_step,
                 unit: fields[index].unit.name,
+                gap_s: None,
             };
             return Err(refuse_field(line, index, kind));
         }

@@ -73,6 +73,7 @@ impl RefusalKind {
             Self::TimeNotIncreasing { .. } => "time-not-increasing",
             Self::TimeAhead { .. } => "time-ahead",
             Self::FuelUsedFalls { .. } => "fuel-used-falls",
+            Self::FlowOverGap { .. } => "flow-over-gap",
             Self::MassNotPositive { .. } => "mass-not-positive",
             Self::LastRowUnfinished { .. } => "last-row-unfinished",
             Self::GzipTruncated => "gzip-truncated",
@@ -144,10 +145,10 @@ impl fmt::Display for RefusalKind {
                 write!(f, "TIME above that of the row before, {previous} {unit}")
             }
             Self::TimeAhead { next, unit } => write_time_below(f, *next, unit),
-            Self::FuelUsedFalls { largest, tolerance, unit } => write!(
-                f,
-                "FU no more than {tolerance} {unit} below its largest value so far, {largest} {unit}"
-            ),
+            Self::FuelUsedFalls { largest, tolerance, unit, gap_s } => {
+                write_fuel_fall(f, (*largest, *tolerance, unit), *gap_s)
+            }
+            Self::FlowOverGap { longest_s } => write_longest_gap(f, *longest_s),
             Self::MassNotPositive { mass } => write!(f, "{mass} above zero"),
             Self::LastRowUnfinished { expected } => {
                 write!(f, "a complete row of {expected} fields and a line end")
@@ -164,9 +165,7 @@ impl fmt::Display for RefusalKind {
             Self::SourceColumnsUnfit { reason } => {
                 write!(f, "columns from which the mapping makes a report: {reason}")
             }
-            Self::SourceColumnMissing { name, hint } => {
-                write!(f, "a column named {name:?}{hint}")
-            }
+            Self::SourceColumnMissing { name, hint } => write_column_named(f, name, hint),
             Self::SourceColumnDoubled { name } => write!(f, "one column named {name:?}"),
             Self::SourceTextMissing { key } => write!(f, "text for {key}"),
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
@@ -184,6 +183,7 @@ impl fmt::Display for RefusalKind {
 }
 
 const INSTANT: &str = "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping";
+const ANOTHER_FLIGHT: &str = ": another flight? new_flight_after_s in the mapping divides them";
 const SAMPLES: &str =
     "samples, of which a cruise report consists; the mapping's rows are averaged points";
 
@@ -216,12 +216,35 @@ fn write_mass_rise(
         f,
         "gross mass no more than {admissible_rise_kg} kg above its smallest value so far, {smallest_kg} kg"
     )?;
-    let Some(gap_s) = gap_s else { return Ok(()) };
+    write_gap(f, gap_s)
+}
+
+fn write_column_named(f: &mut fmt::Formatter<'_>, name: &str, hint: &str) -> fmt::Result {
+    write!(f, "a column named {name:?}{hint}")
+}
+
+fn write_fuel_fall(
+    f: &mut fmt::Formatter<'_>,
+    (largest, tolerance, unit): (f64, f64, &str),
+    gap_s: Option<f64>,
+) -> fmt::Result {
     write!(
         f,
-        "; {gap_s} s without a row come before it: another flight? \
-         new_flight_after_s in the mapping divides them"
+        "FU no more than {tolerance} {unit} below its largest value so far, {largest} {unit}"
+    )?;
+    write_gap(f, gap_s)
+}
+
+fn write_longest_gap(f: &mut fmt::Formatter<'_>, longest_s: f64) -> fmt::Result {
+    write!(
+        f,
+        "no more than {longest_s} s without a row where fuel flow is integrated from a start mass{ANOTHER_FLIGHT}"
     )
+}
+
+fn write_gap(f: &mut fmt::Formatter<'_>, gap_s: Option<f64>) -> fmt::Result {
+    let Some(gap_s) = gap_s else { return Ok(()) };
+    write!(f, "; {gap_s} s without a row come before it{ANOTHER_FLIGHT}")
 }
 
 fn write_level_part(f: &mut fmt::Formatter<'_>, needed_s: f64) -> fmt::Result {

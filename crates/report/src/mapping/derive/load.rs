@@ -78,8 +78,10 @@ impl Part<'_> {
     /// Gross mass at the recording's first row less the integral of fuel flow (trapezoids) from there, climb included.
     fn load_of_integrated_flow(&self, gross_mass: &LoadSource) -> Result<Load, Refusal> {
         let Burnt { by_row_kg: burnt_by_row_kg, bridged } = self.burnt();
+        let last = self.rows.at(self.rows.len() - 1);
+        self.check_gaps(&burnt_by_row_kg[..=last])?;
         let start_kg = self.mass_of(gross_mass, |row| burnt_by_row_kg[row])?.to_kilograms();
-        let last_kg = burnt_by_row_kg[self.rows.at(self.rows.len() - 1)];
+        let last_kg = burnt_by_row_kg[last];
         let zero_fuel_kg = start_kg - last_kg;
         if zero_fuel_kg <= 0.0 || last_kg <= 0.0 {
             let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
@@ -99,14 +101,33 @@ impl Part<'_> {
         })
     }
 
+    /// Where flights are parked between them nobody knows what was burnt, nor what was refuelled: a start mass does not reach over
+    /// that. Before anything was burnt it does.
+    fn check_gaps(&self, burnt_by_row_kg: &[f64]) -> Result<(), Refusal> {
+        let longest_s = self.plan.longest_gap_s();
+        let time_s = &self.recording.time_s;
+        let gaps = time_s.windows(2).zip(burnt_by_row_kg).enumerate();
+        let mut gaps = gaps.map(|(row, (pair, burnt_kg))| (row + 1, pair[1] - pair[0], *burnt_kg));
+        let behind = |row: usize| burnt_by_row_kg.get(row).copied();
+        let found = gaps.find(|(row, gap_s, before_kg)| {
+            *gap_s > longest_s
+                && behind(*row).is_some_and(|burnt_kg| burnt_kg.max(*before_kg) > 0.0)
+        });
+        let Some((row, value, _)) = found else { return Ok(()) };
+        let kind = RefusalKind::FlowOverGap { longest_s };
+        let found = Found::Number { value, unit: "s" };
+        Err(self.layout.refuse_time(self.recording, row, found, kind))
+    }
+
     /// As in the text format: a counter never falls by more than its step.
     fn check_fuel_used_series(&self, series: &Series) -> Result<(), Refusal> {
         let mut largest = f64::NEG_INFINITY;
         for (row, value) in series.values.iter().enumerate() {
             if *value < largest - FUEL_USED_STEP_KG - DIFFERENCE_ROUNDING_KG {
                 let unit = "kg";
-                let kind =
-                    RefusalKind::FuelUsedFalls { largest, tolerance: FUEL_USED_STEP_KG, unit };
+                let gap_s = self.longest_gap_s(row);
+                let tolerance = FUEL_USED_STEP_KG;
+                let kind = RefusalKind::FuelUsedFalls { largest, tolerance, unit, gap_s };
                 let found = Found::Number { value: *value, unit };
                 return Err(self.refuse(row, series.input, found, kind));
             }

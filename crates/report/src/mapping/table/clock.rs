@@ -7,6 +7,7 @@ use super::instants::DAY_S;
 use super::rows::Times;
 use super::{Layout, Recording, Text};
 use crate::mapping::plan::{Plan, TimeForm};
+use crate::refusal::{Found, Refusal, RefusalKind};
 
 /// Without a gap that the mapping states: of samples, and of averaged points, of which a flight may have few. Our choice.
 const GAP_OF_SAMPLES_S: f64 = 10_800.0;
@@ -26,8 +27,7 @@ pub(super) struct Clock {
 impl Clock {
     /// A clock for the times of a layout, before any change.
     pub(super) fn new(plan: &Plan) -> Self {
-        let usual_s = if plan.points.is_some() { GAP_OF_POINTS_S } else { GAP_OF_SAMPLES_S };
-        let gap_s = plan.new_flight_after_s.unwrap_or(usual_s);
+        let gap_s = plan.longest_gap_s();
         let is_of_day = matches!(plan.time, TimeForm::TimeOfDay { .. });
         let gap_s = if is_of_day { gap_s.min(LONGEST_GAP_OF_DAY_S) } else { gap_s };
         Self { changes_s: [None; 3], gap_s, is_of_day }
@@ -54,7 +54,27 @@ impl Clock {
     }
 }
 
+impl Plan {
+    /// The longest time without a row within a flight, s: as the mapping states it, or the usual one.
+    pub(in crate::mapping) fn longest_gap_s(&self) -> f64 {
+        let usual_s = if self.points.is_some() { GAP_OF_POINTS_S } else { GAP_OF_SAMPLES_S };
+        self.new_flight_after_s.unwrap_or(usual_s)
+    }
+}
+
 impl Layout {
+    /// Refuses the time of a row.
+    pub(in crate::mapping) fn refuse_time(
+        &self,
+        recording: &Recording,
+        row: usize,
+        found: Found,
+        kind: RefusalKind,
+    ) -> Refusal {
+        let line = recording.lines.at(row);
+        self.refuse_field((line, &recording.line(line)), self.fields.time, found, kind)
+    }
+
     /// Whether a column tells the tails.
     pub(super) const fn tells_tails(&self) -> bool {
         matches!(self.fields.texts[1].1, Text::Field(_))
