@@ -24,6 +24,7 @@ use crate::cruise_text::Parsed;
 use crate::refusal::Refusal;
 pub use cell_texts::{date_text, text_runs, time_of_day_text};
 pub use converter::Converter;
+use derive::Limits;
 use file::MappingFile;
 pub use first::first_mapping;
 pub use in_memory::{Cells, Lines, TableRows};
@@ -152,6 +153,9 @@ fn unit_names(column: Column) -> String {
 /// Time without a row after which another flight may have begun, s: turnarounds take no less. Our choice.
 const SHORTEST_GAP_S: f64 = 1200.0;
 
+/// Rows of which one altitude may be out of its range and costs no more than its row. Our choice, as for gross masses.
+const ROWS_FOR_ONE_ALTITUDE: u64 = 20;
+
 /// What a first mapping states as aircraft type where no column holds it.
 pub const NO_TYPE: &str = "TYPE";
 
@@ -255,9 +259,27 @@ fn parts(plan: &Plan, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f
             let altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
             let conversion = plan.recorded.iter().find(altitude);
             let mut pressure_altitude_m = Vec::with_capacity(rows);
-            if let Some((_, conversion)) = conversion {
-                conversion
-                    .append_to(&mut pressure_altitude_m, &recording.numbers, 0..rows, |_| true);
+            let limits = Limits::new(Column::PressureAltitude, None);
+            let outside = conversion.map_or(0, |(_, conversion)| {
+                let is_within = limits.contain();
+                conversion.append_to(
+                    &mut pressure_altitude_m,
+                    &recording.numbers,
+                    0..rows,
+                    is_within,
+                )
+            });
+            let is_altitude = |row: usize| limits.admit(pressure_altitude_m[row]);
+            // Of more it is the column that is wrong, and not its rows.
+            let most = rows as u64 / ROWS_FOR_ONE_ALTITUDE;
+            if (1..=most).contains(&outside) {
+                let kept: Vec<usize> = (0..rows).filter(|row| is_altitude(*row)).collect();
+                return level::level_parts_of_rows(
+                    &recording.time_s,
+                    &pressure_altitude_m,
+                    criteria,
+                    &kept,
+                );
             }
             level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
         }

@@ -246,6 +246,32 @@ fn a_counter_that_begins_again_behind_a_gap_is_another_flight() {
     assert!(refusal.contains("new_flight_after_s"), "{refusal}");
 }
 
+/// Ten minutes at one level a second each; what an encoder writes for "no altitude" does not divide them.
+#[test]
+fn an_altitude_out_of_range_costs_its_row_and_no_level_part() {
+    let mut text = format!("{NAMES}\n");
+    for second in 0..600 {
+        let feet = if [150, 151, 300].contains(&second) { 131_071 } else { 37_000 };
+        let _ = writeln!(text, "{second},{feet},-56.5,0.78,447,450,1800,1800,{}", 9000 - second);
+    }
+    let parsed = read(&mapping(SECONDS, GROSS, CRUISE), &text);
+    assert_eq!(parsed.report.columns().time_s.len(), 597);
+    assert_eq!(parsed.left_out, 3);
+    assert_eq!(
+        message(&parsed, "mapped-rows-out-of-range"),
+        "3 rows left out for a number out of range, the first for its ALT"
+    );
+    let strict = mapping(SECONDS, GROSS, &CRUISE.replace("LeaveRowOut", "Refuse"));
+    let refusal = refused(&strict, &text);
+    assert!(refusal.starts_with("line 152, column 5: found 39950.4"), "{refusal}");
+    assert!(refusal.contains("expected ALT of -2000 to 60000 ft"), "{refusal}");
+    // Where all are, it is the column: refused at its first number, and not for want of a level part.
+    let wrong = text.replace(",37000,", ",99000,");
+    let refusal = refused(&mapping(SECONDS, GROSS, CRUISE), &wrong);
+    assert!(refusal.starts_with("line 2, column 3:"), "{refusal}");
+    assert!(refusal.contains("expected ALT of"), "{refusal}");
+}
+
 #[test]
 fn nan_is_no_number_in_text() {
     let text = cruise(&[(3, "NaN"), (50, "nan"), (51, "-9")]);

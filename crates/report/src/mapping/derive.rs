@@ -20,7 +20,8 @@ use units::Mass;
 use super::plan::{Conversion, Plan, TemperatureSource};
 use super::table::{Layout, Recording};
 use air::AirData;
-use rows::{Converted, Limits, Used, UsedRows};
+pub(super) use rows::Limits;
+use rows::{Converted, Used, UsedRows};
 
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};

@@ -52,6 +52,19 @@ pub(super) fn level_parts(
     (parts, longest_s)
 }
 
+/// The same of these rows alone, in their order: what lies between them belongs to the part around it.
+pub(super) fn level_parts_of_rows(
+    time_s: &[f64],
+    pressure_altitude_m: &[f64],
+    criteria: &LevelCriteria,
+    kept: &[usize],
+) -> (Vec<Range<usize>>, f64) {
+    let of_kept = |values: &[f64]| -> Vec<f64> { kept.iter().map(|row| values[*row]).collect() };
+    let (parts, longest_s) = level_parts(&of_kept(time_s), &of_kept(pressure_altitude_m), criteria);
+    let of_all = |part: Range<usize>| kept[part.start]..kept[part.end - 1] + 1;
+    (parts.into_iter().map(of_all).collect(), longest_s)
+}
+
 fn trim(time_s: &[f64], part: Range<usize>, trim_s: f64) -> Range<usize> {
     let first_s = time_s[part.start] + trim_s;
     let last_s = time_s[part.end - 1] - trim_s;
@@ -240,6 +253,18 @@ mod tests {
         assert!(parts(&levels(&[(100, 8_999.9)])).is_empty());
         assert_eq!(parts(&levels(&[(100, 9_000.0)])), [5..95]);
         assert!(parts(&[]).is_empty());
+    }
+
+    /// By hand: 40 s at one level, of which seconds 20 and 21 are an encoder's highest number. Without them one part lasts
+    /// 39 s and is trimmed by 5 s at either end; with them no part lasts 30 s.
+    #[test]
+    fn rows_that_are_left_out_do_not_divide_a_part() {
+        let altitudes = levels(&[(20, 10_000.0), (2, 39_950.0), (18, 10_000.0)]);
+        assert!(parts(&altitudes).is_empty());
+        let time_s: Vec<f64> = (0..40).map(f64::from).collect();
+        let kept: Vec<usize> = (0..20).chain(22..40).collect();
+        let found = level_parts_of_rows(&time_s, &altitudes, &CRITERIA, &kept);
+        assert_eq!(found, (vec![5..35], 39.0));
     }
 
     proptest::proptest! {

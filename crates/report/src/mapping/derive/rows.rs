@@ -130,7 +130,7 @@ fn converted(plan: &Plan, recording: &Recording, rows: &UsedRows) -> Vec<Convert
 }
 
 /// The range of a column in its stored unit.
-pub(super) struct Limits {
+pub(in crate::mapping) struct Limits {
     column: Column,
     is_optional: bool,
     pub(super) minimum: f64,
@@ -140,7 +140,7 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    pub(super) fn new(column: Column, maximum: Option<f64>) -> Self {
+    pub(in crate::mapping) fn new(column: Column, maximum: Option<f64>) -> Self {
         let range = column.range();
         let minimum = range.minimum.unwrap_or(f64::MIN);
         let maximum = maximum.or(range.maximum).unwrap_or(f64::MAX);
@@ -159,13 +159,13 @@ impl Limits {
     }
 
     /// NaN is "not available" in an optional column and outside every range elsewhere.
-    pub(super) fn admit(&self, value: f64) -> bool {
+    pub(in crate::mapping) fn admit(&self, value: f64) -> bool {
         self.contain()(value) && (self.is_simple() || value.is_nan() || value.fract() == 0.0)
     }
 
     /// Whether a number lies between the two limits, without a branch: what asks of many numbers compares several in one instruction.
     #[expect(clippy::needless_bitwise_bool, reason = "lazy operators are branches")]
-    fn contain(&self) -> impl Fn(f64) -> bool + use<> {
+    pub(in crate::mapping) fn contain(&self) -> impl Fn(f64) -> bool + use<> {
         let Self { low, high, is_optional, .. } = *self;
         move |value| ((low <= value) & (value <= high)) | (value.is_nan() & is_optional)
     }
