@@ -17,6 +17,8 @@ pub enum Sampling {
         recorded_interval_s: f64,
         /// Bins that were dropped because they held fewer than half of the samples a bin should hold.
         incomplete_bins: usize,
+        /// Recorded time in those bins, s: for each of their samples the shorter of the steps before and behind it, at most a bin.
+        incomplete_bins_s: f64,
     },
     /// Each sample was sent as the mean over a stable frame: its neighbors are other frames.
     AveragedPoints {

@@ -18,6 +18,7 @@ mod slips;
 use std::hash::{DefaultHasher, Hasher};
 
 use flight::{FlightIdentity, Report, Severity};
+use segmenter::{INCOMPLETE_SHARE, Tally};
 use serde::Serialize;
 
 pub use document::{CheckDocument, SCHEMA, to_text};
@@ -95,6 +96,32 @@ impl FlightCheck {
                 ),
                 likely_cause: "the form of time or of a number, or its unit".to_owned(),
                 remedy: "look at the first of them, which the warning above names".to_owned(),
+            };
+            self.findings.push(draft.for_flight(&self.identity));
+            self.findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
+        }
+        self
+    }
+}
+
+impl FlightCheck {
+    /// The same with what is to be said of minutes that are dropped because they hold too few samples.
+    #[must_use]
+    pub fn with_incomplete_minutes(mut self, tally: &Tally) -> Self {
+        let share = tally.incomplete_share();
+        if share > INCOMPLETE_SHARE {
+            let minutes = tally.incomplete_bins;
+            let draft = Draft {
+                severity: Severity::Warning,
+                code: "minutes-left-out",
+                size: 100.0 * share,
+                unit: "%",
+                message: format!(
+                    "{minutes} minutes with less than half of their samples are left out, {} are used",
+                    tally.samples
+                ),
+                likely_cause: "drop-outs, or a recorder that changes to less than one sample in 30 s on the way".to_owned(),
+                remedy: "export the recording with all its rows, or each rate as a flight of its own".to_owned(),
             };
             self.findings.push(draft.for_flight(&self.identity));
             self.findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));

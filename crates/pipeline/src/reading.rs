@@ -245,6 +245,7 @@ fn reduce(
         .then(|| check_report(&report).with_rows_left_out(report.len(), left_out));
     let reduced =
         ReducedFlight::from_report(report, criteria, notes).map_err(|error| error.to_string())?;
+    let check = check.map(|check| check.with_incomplete_minutes(&reduced.tally));
     let reduced = ReducedFlight { check, ..reduced };
     flight_read(path, content, end, reduced)
 }

@@ -37,12 +37,12 @@ mod verdict;
 use core::ops::Range;
 use std::sync::Arc;
 
-use flight::{FlightIdentity, SampleRun, Segment, TemperatureSource, Track};
+use flight::{FlightIdentity, SampleRun, Sampling, Segment, TemperatureSource, Track};
 
 pub use criteria::TrimCriteria;
 pub use criterion::{Criterion, CriterionKind, CriterionSet};
 pub use points::{Scatter, of_points};
-pub use tally::{CriterionCost, Tally};
+pub use tally::{CriterionCost, INCOMPLETE_SHARE, Tally};
 pub use verdict::{DroppedPiece, PieceDropReason, SampleVerdict, Segmentation};
 
 /// The stabilised segments of a track, and the verdict on every sample.
@@ -141,13 +141,19 @@ impl<'a> Cut<'a> {
     }
 
     fn finish(self) -> Segmentation {
-        let tally = Tally::of_flight(
+        let mut tally = Tally::of_flight(
             &self.verdicts,
             &self.dropped_pieces,
             self.segments.len(),
             self.track.dropped_runs().len(),
             not_evaluated(self.track),
         );
+        if let Sampling::AveragedToBins { incomplete_bins, incomplete_bins_s, .. } =
+            self.track.sampling()
+        {
+            tally.incomplete_bins = incomplete_bins;
+            tally.incomplete_bins_s = whole(incomplete_bins_s);
+        }
         Segmentation {
             segments: self.segments,
             verdicts: self.verdicts,
@@ -156,6 +162,15 @@ impl<'a> Cut<'a> {
             tally,
         }
     }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "no cruise lasts 4e9 s, and none is negative"
+)]
+const fn whole(time_s: f64) -> usize {
+    time_s.round() as usize
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "no cruise has 4e9 samples")]

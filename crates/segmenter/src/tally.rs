@@ -22,6 +22,9 @@ pub struct CriterionCost {
     pub outliers_alone: usize,
 }
 
+/// Share of the recorded time from which minutes with too few samples are worth a word. Our choice.
+pub const INCOMPLETE_SHARE: f64 = 0.05;
+
 /// The verdicts of one flight, or of several flights together, counted.
 ///
 /// ```text
@@ -48,6 +51,10 @@ pub struct Tally {
     pub segments: usize,
     /// Runs that the tracks dropped.
     pub dropped_runs: usize,
+    /// Minutes of fast recordings that the tracks dropped, because they held too few samples: no samples of the tracks.
+    pub incomplete_bins: usize,
+    /// Recorded time in them, in whole seconds.
+    pub incomplete_bins_s: usize,
     /// Pieces of one sample.
     pub pieces_of_one_sample: usize,
     /// Pieces that were too short, or became so by the filter.
@@ -68,6 +75,8 @@ impl Tally {
         samples_kept: 0,
         segments: 0,
         dropped_runs: 0,
+        incomplete_bins: 0,
+        incomplete_bins_s: 0,
         pieces_of_one_sample: 0,
         pieces_too_short: 0,
         costs: no_costs(),
@@ -126,6 +135,14 @@ impl Tally {
         self.samples - self.samples_not_judged
     }
 
+    /// Share of the recorded time that lies in minutes with too few samples. The last minute before a hole is seldom whole, and counts
+    /// by its samples.
+    #[must_use]
+    pub fn incomplete_share(&self) -> f64 {
+        let dropped_s = self.incomplete_bins_s as f64;
+        if dropped_s > 0.0 { dropped_s / (dropped_s + track_s(self.samples)) } else { 0.0 }
+    }
+
     /// What one criterion cost.
     #[must_use]
     pub const fn cost(&self, criterion: Criterion) -> CriterionCost {
@@ -141,6 +158,11 @@ impl Tally {
             .map(|cost| cost.criterion)
             .collect()
     }
+}
+
+/// Time of a track's samples where it is averaged to minutes.
+fn track_s(samples: usize) -> f64 {
+    60.0 * samples as f64
 }
 
 const fn no_costs() -> [CriterionCost; 8] {
@@ -171,6 +193,8 @@ impl AddAssign for Tally {
         self.samples_kept += other.samples_kept;
         self.segments += other.segments;
         self.dropped_runs += other.dropped_runs;
+        self.incomplete_bins += other.incomplete_bins;
+        self.incomplete_bins_s += other.incomplete_bins_s;
         self.pieces_of_one_sample += other.pieces_of_one_sample;
         self.pieces_too_short += other.pieces_too_short;
         for (cost, other) in self.costs.iter_mut().zip(other.costs) {
@@ -215,6 +239,10 @@ impl fmt::Display for Tally {
             let runs = counted(self.dropped_runs, "run");
             write!(f, "; {} not judged ({runs} too short)", self.samples_not_judged)?;
         }
+        if self.incomplete_share() > INCOMPLETE_SHARE {
+            let minutes = counted(self.incomplete_bins, "minute");
+            write!(f, "; {minutes} dropped for too few samples")?;
+        }
         for (index, criterion) in self.not_evaluated().iter().enumerate() {
             f.write_str(if index == 0 { "; not evaluated: " } else { ", " })?;
             f.write_str(criterion.name())?;
@@ -238,4 +266,25 @@ fn write_costs(f: &mut fmt::Formatter<'_>, costs: [(Criterion, usize, usize); 8]
 
 fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: of 40 minutes five with too few samples, in which 150 s were recorded: 150/(150 + 2400) = 1/17 is worth a word; of
+    /// twice as many minutes, 1/33, it is none.
+    #[test]
+    fn minutes_with_too_few_samples_are_told_from_a_twentieth_on() {
+        let mut tally = Tally { flights: 1, samples: 40, ..Tally::NOTHING };
+        tally.incomplete_bins = 5;
+        tally.incomplete_bins_s = 150;
+        assert!((tally.incomplete_share() - 1.0 / 17.0).abs() < 1e-12);
+        let told = tally.to_string();
+        assert!(told.contains("; 5 minutes dropped for too few samples"), "{told}");
+        tally += Tally { flights: 1, samples: 40, ..Tally::NOTHING };
+        assert!((tally.incomplete_share() - 1.0 / 33.0).abs() < 1e-12);
+        assert!(!tally.to_string().contains("too few samples"), "{tally}");
+        assert!(Tally::NOTHING.incomplete_share() < f64::MIN_POSITIVE);
+    }
 }

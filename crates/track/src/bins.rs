@@ -9,7 +9,8 @@
 //!   above 1.5 median steps and above half a bin: a lost second in a recording of one sample a second costs a bin one
 //!   sample, not its neighbors.
 //! - A bin that holds less than half of the samples it should hold, bin length over median step, is dropped and
-//!   counted; it ends the run, as a hole does.
+//!   counted; it ends the run, as a hole does. Where a recording is slower for a while, as recorders are that change
+//!   their rate on the way, a sample stands for the median of the steps around it instead, if that is longer.
 //! - Time, fuel used and every other number are means over the bin's samples, so that rates between bins are those
 //!   between their mean times. Longitude and true heading are mean directions. In an optional column the mean is over
 //!   the samples that have a value. Anti-ice bleed is the share of the samples that have it on, from 0 to 1.
@@ -29,6 +30,10 @@ pub const BIN_S: f64 = 60.0;
 /// A median step at least this long is a one-minute recording, s.
 pub const AS_SENT_INTERVAL_MINIMUM_S: f64 = 59.0;
 
+/// Steps before and behind a sample by which the rate around it is judged: so many that a few drop-outs are not another rate. Our
+/// choice.
+const STEPS_AROUND: usize = 10;
+
 /// Bins that are summed side by side: a sum takes four steps of a processor, and two of them can begin in each. Our choice.
 const BINS_AT_ONCE: usize = 8;
 
@@ -40,6 +45,8 @@ pub(crate) struct Binned {
     pub(crate) runs: Vec<Range<usize>>,
     /// Dropped bins.
     pub(crate) incomplete_bins: usize,
+    /// Recorded time in them.
+    pub(crate) incomplete_bins_s: f64,
 }
 
 /// Whether a recording must be averaged.
@@ -59,7 +66,8 @@ pub(crate) fn average(report: Report, recorded_interval_s: f64) -> Result<Binned
     let (header, columns) = report.into_parts();
     let averaged = average_columns(&columns, &layout.bins);
     let report = Report::new(header, averaged).map_err(TrackError::Averaged)?;
-    Ok(Binned { report, runs: layout.runs, incomplete_bins: layout.incomplete_bins })
+    let Layout { runs, incomplete_bins, incomplete_bins_s, .. } = layout;
+    Ok(Binned { report, runs, incomplete_bins, incomplete_bins_s })
 }
 
 /// Which samples make which bin, and which bins follow each other.
@@ -69,11 +77,13 @@ struct Layout {
     /// Complete bins that follow each other.
     runs: Vec<Range<usize>>,
     incomplete_bins: usize,
+    incomplete_bins_s: f64,
 }
 
 fn layout(time_s: &[f64], recorded_interval_s: f64) -> Layout {
     let hole_s = (GAP_INTERVALS * recorded_interval_s).max(0.5 * BIN_S);
-    let mut layout = Layout { bins: Vec::new(), runs: Vec::new(), incomplete_bins: 0 };
+    let mut layout =
+        Layout { bins: Vec::new(), runs: Vec::new(), incomplete_bins: 0, incomplete_bins_s: 0.0 };
     for recorded in interval::split_at_gaps(time_s, hole_s) {
         let mut run_start = layout.bins.len();
         let mut bin_end_s = time_s[recorded.start] + BIN_S;
@@ -84,17 +94,51 @@ fn layout(time_s: &[f64], recorded_interval_s: f64) -> Layout {
                 sample += 1;
             }
             bin_end_s += BIN_S;
-            let samples = (sample - start) as f64;
-            if 2.0 * samples * recorded_interval_s >= BIN_S - interval::TIME_TOLERANCE_S {
+            if is_complete(time_s, &recorded, start..sample, recorded_interval_s) {
                 layout.bins.push(start..sample);
             } else {
                 layout.incomplete_bins += 1;
+                layout.incomplete_bins_s += recorded_s(time_s, start..sample);
                 end_run(&mut layout, &mut run_start);
             }
         }
         end_run(&mut layout, &mut run_start);
     }
     layout
+}
+
+/// Whether the samples of a bin stand for half of its time at least: each for the median step of the recording or of the steps around
+/// it, whichever is longer. `recorded` are the samples between two holes.
+fn is_complete(
+    time_s: &[f64],
+    recorded: &Range<usize>,
+    bin: Range<usize>,
+    recorded_interval_s: f64,
+) -> bool {
+    let is_half = |covered_s: f64| 2.0 * covered_s >= BIN_S - interval::TIME_TOLERANCE_S;
+    // Nearly always: the steps around are looked at only where a bin would be dropped.
+    if is_half(bin.len() as f64 * recorded_interval_s) {
+        return true;
+    }
+    let stands_for_s = |sample: usize| {
+        let first = sample.saturating_sub(STEPS_AROUND).max(recorded.start);
+        let last = (sample + STEPS_AROUND).min(recorded.end - 1);
+        if first == last {
+            return recorded_interval_s;
+        }
+        interval::median_step_s(&time_s[first..=last]).max(recorded_interval_s)
+    };
+    is_half(bin.map(stands_for_s).sum())
+}
+
+/// The time for which samples were recorded: a sample beside a hole stands for the step on its other side.
+fn recorded_s(time_s: &[f64], samples: Range<usize>) -> f64 {
+    let step_s = |first: usize| Some(time_s.get(first + 1)? - time_s.get(first)?);
+    let shorter_s = |sample: usize| {
+        let before_s = sample.checked_sub(1).and_then(step_s).unwrap_or(BIN_S);
+        before_s.min(step_s(sample).unwrap_or(BIN_S)).min(BIN_S)
+    };
+    samples.map(shorter_s).sum()
 }
 
 fn end_run(layout: &mut Layout, run_start: &mut usize) {
@@ -209,6 +253,29 @@ mod tests {
         assert_eq!(found.bins, [0..60, 60..90, 90..150]);
         assert_eq!(found.runs, [0..2, 2..3]);
         assert_eq!(found.incomplete_bins, 0);
+    }
+
+    /// By hand: 200 s at one sample a second, then 300 s at one in four, as at the top of climb. The median step is 1 s: in 15 samples
+    /// of a minute half of 60 would be missing. The minute from 180 s on has 20 samples of the one rate and 10 of the other, 20 + 40 s;
+    /// behind the last full minute five samples stand for 20 s.
+    #[test]
+    fn a_rate_that_changes_costs_no_bin() {
+        let slow = (0..75).map(|sample| 200 + 4 * sample);
+        let time_s: Vec<f64> = (0..200).chain(slow).map(f64::from).collect();
+        let found = layout(&time_s, 1.0);
+        let counts: Vec<usize> = found.bins.iter().map(Range::len).collect();
+        assert_eq!(counts, [60, 60, 60, 30, 15, 15, 15, 15]);
+        assert_eq!(found.runs, std::slice::from_ref(&(0..8)));
+        assert_eq!((found.incomplete_bins, found.incomplete_bins_s), (1, 20.0));
+        // And slower first; a minute of which one sample in twelve is left is none, whatever the rate of the rest.
+        let slow = (0..75).map(|sample| 4 * sample);
+        let fast = (300..800).filter(|second| !(420..480).contains(second) || second % 12 == 0);
+        let time_s: Vec<f64> = slow.chain(fast).map(f64::from).collect();
+        let found = layout(&time_s, 1.0);
+        let counts: Vec<usize> = found.bins.iter().map(Range::len).collect();
+        assert_eq!(counts, [15, 15, 15, 15, 15, 60, 60, 60, 60, 60, 60, 60]);
+        // Five samples beside steps of 12 s, of which the first follows a step of 1 s, and 20 of the last minute.
+        assert_eq!((found.incomplete_bins, found.incomplete_bins_s), (2, 4.0 * 12.0 + 1.0 + 20.0));
     }
 
     /// Oracle: each bin by itself, to the bit.

@@ -90,6 +90,7 @@ pub fn derive(report: Report) -> Result<Track, TrackError> {
                 bin_s: bins::BIN_S,
                 recorded_interval_s,
                 incomplete_bins: binned.incomplete_bins,
+                incomplete_bins_s: binned.incomplete_bins_s,
             };
             (binned.report, sampling, bins::BIN_S, binned.runs)
         } else {
@@ -135,7 +136,6 @@ fn runs(
             continue;
         }
         let time_s = &columns.time_s[samples.clone()];
-        let rate_of = |column: &[f64]| rate::along_run(time_s, &column[samples.clone()]);
         runs.push(SampleRun {
             acceleration_m_s2: acceleration(time_s, &columns.ground_speed_m_s[samples.clone()]),
             // A trim criterion looks at it: which samples are steady does not depend on how acceleration is taken.

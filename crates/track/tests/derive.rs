@@ -179,8 +179,12 @@ fn one_hertz() -> ReportColumns {
 #[test]
 fn one_hertz_is_averaged_to_minutes() {
     let track = track(one_hertz());
-    let sampling =
-        Sampling::AveragedToBins { bin_s: 60.0, recorded_interval_s: 1.0, incomplete_bins: 0 };
+    let sampling = Sampling::AveragedToBins {
+        bin_s: 60.0,
+        recorded_interval_s: 1.0,
+        incomplete_bins: 0,
+        incomplete_bins_s: 0.0,
+    };
     assert_eq!(track.sampling(), sampling);
     close(&[track.sample_interval_s()], &[60.0]);
     let columns = track.report().columns();
@@ -205,10 +209,6 @@ fn one_hertz_is_averaged_to_minutes() {
     assert_eq!(*anti_ice, [Some(0.25), Some(0.0), None, Some(1.0)]);
 }
 
-#[test]
-fn incomplete_bins_are_dropped_and_counted() {
-    // 200 s: the last bin holds 20 of 60 samples.
-    let track = track(columns(every(1.0, 200)));
 /// Oracle: the derivative of V = 230 + 3 sin ωt, one turn an hour, at the mean time of each bin. Differences over two steps of
 /// 60 s are within (ωh)²/6 = 0.2 % of the largest acceleration, the lines at both ends within 0.8 (ωh)² = 0.9 %; forward
 /// differences lie 30 s late, 2 sin(½ ωh) = 5 %.
@@ -238,6 +238,10 @@ fn acceleration_of_a_bin_is_that_of_its_own_minute() {
     assert!(worst(&run.vertical_speed_m_s[..89], 30.0) < 0.01);
 }
 
+#[test]
+fn incomplete_bins_are_dropped_and_counted() {
+    // 200 s: the last bin holds 20 of 60 samples.
+    let track = track(columns(every(1.0, 200)));
     close(&track.report().columns().time_s, &[29.5, 89.5, 149.5]);
     assert!(matches!(track.sampling(), Sampling::AveragedToBins { incomplete_bins: 1, .. }));
 

@@ -232,7 +232,7 @@ fn every_kind_of_finding_is_planted() {
     // The page lists every kind; each of them is expected of some slip.
     let planted: BTreeSet<&str> = (SLIPS.iter().chain(&MORE_SLIPS).map(|(_, _, code)| *code))
         .chain(OF_SEVERAL_FLIGHTS)
-        .chain(["rows-left-out", "not-evaluated"])
+        .chain(["rows-left-out", "minutes-left-out", "not-evaluated"])
         .collect();
     let page = std::fs::read_to_string(root().join("docs/src/guides/check.md")).unwrap();
     let listed: Vec<&str> = page
@@ -278,6 +278,31 @@ fn layouts_read_with_their_first_mapping_have_no_finding() {
         .expect(0);
         assert_eq!(codes(&document(&json)), Vec::<String>::new(), "{}", ran.stdout);
     }
+}
+
+/// Ten minutes at one sample a second, then ten at one in 40 s, of which every minute has less than half of its samples.
+#[test]
+fn minutes_with_too_few_samples_are_a_finding_and_explained() {
+    let slower = |text: &str| {
+        let before = text.lines().position(|line| line.starts_with("TIME")).unwrap() + 2;
+        let mut lines: Vec<String> = text.lines().take(before).map(str::to_owned).collect();
+        let (_, rest) = text.lines().nth(before).unwrap().trim_start().split_once(' ').unwrap();
+        let times = (0..600).chain((600..1200).step_by(40));
+        lines.extend(times.map(|time| format!("{time} {rest}")));
+        lines.join("\n") + "\n"
+    };
+    let found = told(slower);
+    let of_minutes = found.iter().find(|[code, ..]| code == "minutes-left-out");
+    let [_, message, ..] = of_minutes.unwrap_or_else(|| panic!("{found:?}"));
+    assert_eq!(
+        message,
+        "15 minutes with less than half of their samples are left out, 10 are used"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let mut arguments: Vec<std::ffi::OsString> = vec!["segment".into(), "--explain".into()];
+    arguments.extend(planted(folder.path(), slower).into_iter().map(PathBuf::into_os_string));
+    let ran = cruisefit(&arguments);
+    assert!(ran.stderr.contains("15 minutes dropped for too few samples"), "{}", ran.stderr);
 }
 
 /// A tenth of the rows of a recording cannot be read.
