@@ -240,6 +240,38 @@ fn tank_gauges_beside_a_gross_mass() {
     assert_eq!(columns(&parsed).optional.get(Column::FuelQuantity).unwrap()[2], Some(11_920.0));
 }
 
+/// By hand: gauges read 12 000 kg at the first row, so that 65 000 kg are 53 000 kg and that; masses are those without gauges.
+#[test]
+fn tank_gauges_beside_a_start_mass() {
+    let rows = plain()
+        .replace("ff,gw", "ff,gw,fq")
+        .replace(",65000", ",65000,12000")
+        .replace(",64960", ",64960,11960")
+        .replace(",64920", ",64920,11920");
+    let gauges = "\"WF\": Recorded(column: \"ff\", unit: \"kg/h\"), \"FQ\": Recorded(column: \"fq\", unit: \"kg\"),";
+    let changes = [
+        (MASS, "StartMass(gross_weight: Value(65000, \"kg\"))"),
+        ("\"WF\": Recorded(column: \"ff\", unit: \"kg/h\"),", gauges),
+    ];
+    for (rows, zero_fuel_kg) in [
+        (rows.clone(), 53_000.0),
+        // The first reading that is there, and what was burnt until then: 11 965 + 40.
+        (rows.replace(",12000", ",").replace(",11960", ",11965"), 52_995.0),
+        // Gauges that read less than was burnt are wrong: as without them.
+        (rows.replace(",119", ",0").replace(",12000", ",20"), 64_920.0),
+    ] {
+        let parsed = read(&mapping(&changes), &rows);
+        let header = parsed[0].report.header();
+        let zero_fuel = header.zero_fuel_mass.to_kilograms();
+        assert!((zero_fuel - zero_fuel_kg).abs() < 1e-9, "{zero_fuel}");
+        let start_kg = zero_fuel + header.fuel_on_board.to_kilograms();
+        assert!((start_kg - 65_000.0).abs() < 1e-9, "{start_kg}");
+        for (found, expected) in columns(&parsed).fuel_used_kg.iter().zip([0.0, 40.0, 80.0]) {
+            assert!((found - expected).abs() < 1e-9, "{found}");
+        }
+    }
+}
+
 #[test]
 fn bad_rows_cost_themselves() {
     let rows = plain()

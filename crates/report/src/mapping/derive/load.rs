@@ -88,9 +88,12 @@ impl Part<'_> {
             let found = Found::Number { value: zero_fuel_kg, unit: "kg" };
             return Err(self.refuse(0, 0, found, kind));
         }
+        let fuel_kg = self.fuel_by_gauges_kg(&burnt_by_row_kg).unwrap_or(last_kg);
+        let is_possible = (last_kg..start_kg).contains(&fuel_kg);
+        let fuel_kg = if is_possible { fuel_kg } else { last_kg };
         Ok(Load {
-            zero_fuel_mass: Mass::kilograms(zero_fuel_kg),
-            fuel_on_board: Mass::kilograms(last_kg),
+            zero_fuel_mass: Mass::kilograms(start_kg - fuel_kg),
+            fuel_on_board: Mass::kilograms(fuel_kg),
             fuel_used_kg: self
                 .rows
                 .runs()
@@ -99,6 +102,15 @@ impl Part<'_> {
             largest_rise_kg: None,
             bridged,
         })
+    }
+
+    /// Fuel in the tanks at the recording's first row, where the gauges are recorded: what they read first of the rows that are used, and
+    /// what was burnt until then.
+    fn fuel_by_gauges_kg(&self, burnt_by_row_kg: &[f64]) -> Option<f64> {
+        let is_quantity = |(column, _): &&(Column, _)| *column == Column::FuelQuantity;
+        let (_, quantity) = self.plan.recorded.iter().find(is_quantity)?;
+        let at = |row: usize| quantity.apply(&self.recording.numbers, row) + burnt_by_row_kg[row];
+        self.rows.runs().flatten().map(at).find(|fuel_kg| fuel_kg.is_finite())
     }
 
     /// Where flights are parked between them nobody knows what was burnt, nor what was refuelled: a start mass does not reach over
