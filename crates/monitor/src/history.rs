@@ -128,8 +128,10 @@ impl History {
             changes = found(&shown, &weights, &candidates, beliefs);
             let asked = Asked::new(&shown, &weights, &[], *beliefs);
             let stepped = stepped_events(&asked, &changes, &candidates)?;
-            levels = levels_between(&mut changes, &stepped, series, &weights, beliefs)?;
+            levels = levels_between(&mut changes, &stepped.kept, series, &weights, beliefs)?;
             let next: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
+            let of_series = Asked::new(series, &weights, &[], *beliefs);
+            levels = levels.with_trend(stepped.trend(&of_series, &next)?);
             let is_settled = next == boundaries;
             boundaries = next;
             if is_settled || series.conditions().is_empty() || round == MOST_ROUNDS {
@@ -200,7 +202,7 @@ fn merged(some: &[usize], others: &[usize]) -> Vec<usize> {
 /// after the other, where the flights and what is believed of an event say rather that nothing changed.
 ///
 /// ```text
-/// odds = p/(1 − p)·p(d | a step there)/p(d | none there),  p [`ChangeBeliefs::change_at_event`]    [monitoring.22]
+/// odds = p/(1 − p)·p(d | a step there)/p(d | none there),  p [`ChangeBeliefs::change_at_event`]    [monitoring.23]
 /// ```
 ///
 /// A wash that is too small to be a change by itself takes back what a year of wear makes all the same: a trend over several of
@@ -209,7 +211,7 @@ fn stepped_events(
     asked: &Asked<'_>,
     changes: &[Change],
     candidates: &[Candidate],
-) -> Option<Vec<usize>> {
+) -> Option<SteppedEvents> {
     let Asked { series, weights, ref beliefs, middle_percent, .. } = *asked;
     let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
     let is_free = |flight: &usize| {
@@ -224,21 +226,60 @@ fn stepped_events(
         let levels = Levels::fit(series, weights, &merged(&found, kept), beliefs)?;
         Some(levels.ln_evidence(middle_percent, beliefs))
     };
+    let mut weighed = vec![(kept.clone(), ln_evidence(&kept)? + kept.len() as f64 * ln_believed)];
     loop {
-        let with_all = ln_evidence(&kept)?;
+        let (_, with_all) = *weighed.iter().find(|(set, _)| *set == kept)?;
         let mut least: Option<(usize, f64)> = None;
         for place in 0..kept.len() {
             let mut others = kept.clone();
             others.remove(place);
-            let ln_odds = ln_believed + with_all - ln_evidence(&others)?;
-            if least.is_none_or(|(_, least)| ln_odds < least) {
-                least = Some((place, ln_odds));
+            let ln = ln_evidence(&others)? + others.len() as f64 * ln_believed;
+            if least.is_none_or(|(_, least)| with_all - ln < least) {
+                least = Some((place, with_all - ln));
             }
+            weighed.push((others, ln));
         }
         match least {
             Some((place, ln_odds)) if ln_odds < 0.0 => kept.remove(place),
-            _ => return Some(kept),
+            _ => return Some(SteppedEvents { kept, weighed }),
         };
+    }
+}
+
+/// Which recorded events are steps.
+struct SteppedEvents {
+    /// First flights after those that more probably are than not.
+    kept: Vec<usize>,
+    /// Every set of them that was asked for, with ln of its probability but for a common term.
+    weighed: Vec<(Vec<usize>, f64)>,
+}
+
+impl SteppedEvents {
+    /// The trend over all sets of events that may be steps: what it would be with an event left out counts as much as leaving it out
+    /// is probable.
+    ///
+    /// ```text
+    /// t = Σ p_S·t_S,  variance Σ p_S·(v_S + (t_S − t)²)                                          [monitoring.24]
+    /// ```
+    ///
+    /// # Source
+    /// Madigan and Raftery 1994, doi 10.1080/01621459.1994.10476894: averaging over the models that are not far less probable.
+    fn trend(&self, asked: &Asked<'_>, found: &[usize]) -> Option<Estimate> {
+        let most = self.weighed.iter().map(|(_, ln)| *ln).fold(f64::NEG_INFINITY, f64::max);
+        let mut trends = Vec::with_capacity(self.weighed.len());
+        for (set, ln) in &self.weighed {
+            let boundaries = merged(found, set);
+            let levels = Levels::fit(asked.series, asked.weights, &boundaries, &asked.beliefs)?;
+            trends.push(((ln - most).exp(), levels.trend_percent_per_year()));
+        }
+        if let [(_, only)] = trends[..] {
+            return Some(only);
+        }
+        let total: f64 = trends.iter().map(|(weight, _)| weight).sum();
+        let value = trends.iter().map(|(weight, trend)| weight * trend.value).sum::<f64>() / total;
+        let spread = |trend: &Estimate| trend.deviation.powi(2) + (trend.value - value).powi(2);
+        let variance = trends.iter().map(|(weight, trend)| weight * spread(trend)).sum::<f64>();
+        Some(Estimate { value, deviation: (variance / total).sqrt() })
     }
 }
 
@@ -411,3 +452,6 @@ fn effect(
         .collect();
     EventEffect { event, first_flight, effect_percent, together_with }
 }
+
+#[cfg(test)]
+mod tests;

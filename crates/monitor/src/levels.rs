@@ -46,6 +46,8 @@ pub struct Levels {
     covariance: SMatrix<f64, COLUMNS, COLUMNS>,
     /// Standard deviation of the trend before the flights are seen, % a year.
     trend_before_percent_per_year: f64,
+    /// The trend where it is averaged over what may step beside the boundaries.
+    averaged_trend: Option<Estimate>,
     /// Squares about levels, trend and conditions, in variances of flights.
     residual: f64,
     /// ln |Σ Sxx + Λ| − ln |Λ|.
@@ -121,6 +123,7 @@ impl Levels {
             coefficients,
             covariance,
             trend_before_percent_per_year,
+            averaged_trend: None,
             residual: squares - coefficients.dot(&right),
             ln_volume,
             flights,
@@ -142,7 +145,15 @@ impl Levels {
     /// The trend between changes, % a year.
     #[must_use]
     pub fn trend_percent_per_year(&self) -> Estimate {
-        Estimate { value: self.coefficients[0], deviation: self.covariance[(0, 0)].sqrt() }
+        self.averaged_trend.unwrap_or_else(|| Estimate {
+            value: self.coefficients[0],
+            deviation: self.covariance[(0, 0)].sqrt(),
+        })
+    }
+
+    /// The same levels where the trend is not known from these boundaries alone.
+    pub(crate) fn with_trend(self, trend: Estimate) -> Self {
+        Self { averaged_trend: Some(trend), ..self }
     }
 
     /// The same where the flights show it; `None` where they say next to nothing beyond what was believed before them: its standard
