@@ -196,7 +196,8 @@ pub fn initial_model(
         pressure_altitudes,
         extrapolated_nodes,
     };
-    let findings = findings::of_guide(aircraft, guide, (&rows, &residuals_percent), &fit);
+    let mut findings = findings::of_guide(aircraft, guide, (&rows, &residuals_percent), &fit);
+    findings.extend(findings::coarse_table(&model, &rows));
     Ok(InitialModel { model, fit, findings })
 }
 

@@ -2,9 +2,11 @@
 
 use flight::{Finding, Severity};
 
+use lut::Outside;
+
 use super::odd_row::odd_row;
 use super::{GuideFit, GuideObservation};
-use crate::{Aircraft, Guide, poll_schumann};
+use crate::{Aircraft, Guide, PerformanceModel, poll_schumann};
 
 /// Growth of an error above which the guide has too few rows somewhere in its range: a guide rounded to 0.5 % is off by
 /// more than 2.5 % there. Guides that span weights, altitudes and speeds reach 1 to 3.
@@ -16,6 +18,9 @@ const LARGE_RESIDUAL_PERCENT: f64 = 5.0;
 const ODD_ROW_FACTOR: f64 = 5.0;
 /// Residual within which a row is as guides are rounded, %.
 const ROUNDING_PERCENT: f64 = 1.0;
+/// How far a table may be off its own polynomial between its nodes, root mean square, % of drag: a quarter of the scatter of guides
+/// about theirs.
+const COARSE_TABLE_PERCENT: f64 = 0.5;
 
 /// Lift-to-drag ratios that an aircraft in cruise may have. A flow halved or a mass in lb under kg doubles it.
 const LIFT_TO_DRAG: (f64, f64) = (6.0, 24.0);
@@ -49,6 +54,37 @@ pub(super) fn of_guide(
     findings.extend(mistyped(aircraft, guide, (rows, residuals_percent), fit));
     findings.extend(extrapolated(fit, aircraft.grid().nodes()));
     findings
+}
+
+/// A table whose chords leave the polynomial between its nodes: its predictions are off the guide's by as much.
+///
+/// ```text
+/// e = D_table/D_polynomial − 1 at the guide's rows;   a chord over a step h is off by at most h²·|D''|/8     [tables.3]
+/// ```
+pub(super) fn coarse_table(model: &PerformanceModel, rows: &[GuideObservation]) -> Option<Finding> {
+    let (table, polynomial) = (model.drag_table(), model.polynomial());
+    let off_percent = |row: &GuideObservation| {
+        let cell = table.grid().locate(row.lift_coefficient, row.mach, Outside::Error).ok()?;
+        let known = polynomial.value(row.lift_coefficient, row.mach);
+        Some(100.0 * (table.interpolate(&cell) / known - 1.0))
+    };
+    let off: Vec<f64> = rows.iter().filter_map(off_percent).collect();
+    let count = off.len() as f64;
+    let rms = (off.iter().map(|percent| percent * percent).sum::<f64>() / count).sqrt();
+    if off.is_empty() || rms < COARSE_TABLE_PERCENT {
+        return None;
+    }
+    let mean = off.iter().sum::<f64>() / count;
+    let largest = off.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+    // The error grows with the square of the step.
+    let share = (COARSE_TABLE_PERCENT / 2.0 / rms).sqrt();
+    Some(finding(
+        Severity::Warning,
+        "guide-coarse-table",
+        format!(
+            "between its nodes the table is {rms:.1} % of drag off the polynomial (root mean square over the guide's rows; mean {mean:+.1} %, largest {largest:+.1} %), and so are its predictions: take steps of {share:.1} of these"
+        ),
+    ))
 }
 
 fn finding(severity: Severity, code: &'static str, message: String) -> Finding {

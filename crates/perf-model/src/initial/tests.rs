@@ -279,3 +279,35 @@ fn scattered_and_rounded_rows_are_not_mistyped() {
     assert!(percent.abs() > 5.0 * initial.fit.residual_rms_percent, "{:?}", initial.fit);
     assert_eq!(finding(&initial, "guide-odd-row"), None);
 }
+
+/// The oracle is the polar at the four nodes about each row of the guide, bilinear by hand.
+#[test]
+fn a_table_of_large_steps_is_told() {
+    let told = |aircraft: &str| {
+        let aircraft = Aircraft::from_ron(aircraft).unwrap();
+        let guide = guide(&aircraft, &WEIGHTS_LB, &ALTITUDES_FT, &MACHS);
+        let initial = super::initial_model(&aircraft, &guide).unwrap();
+        let found = initial.findings.into_iter().find(|one| one.code == "guide-coarse-table");
+        let rows =
+            guide.points().iter().map(|point| observe_guide_point(&aircraft, point).unwrap());
+        (found.map(|one| one.message), rows.collect::<Vec<_>>())
+    };
+    assert_eq!(told(AIRCRAFT).0, None);
+    let (found, rows) = told(&AIRCRAFT.replace("(0.50, 0.95, 0.05)", "(0.50, 0.90, 0.4)"));
+    let off: Vec<f64> = rows
+        .iter()
+        .filter(|row| (0.10..=0.70).contains(&row.lift_coefficient) && row.mach <= 0.90)
+        .map(|row| {
+            let low = 0.10 + 0.05 * ((row.lift_coefficient - 0.10) / 0.05).floor();
+            let (u, v) = ((row.lift_coefficient - low) / 0.05, (row.mach - 0.50) / 0.4);
+            let along = |mach: f64| (1.0 - u) * polar(low, mach) + u * polar(low + 0.05, mach);
+            let chord = (1.0 - v) * along(0.50) + v * along(0.90);
+            100.0 * (chord / polar(row.lift_coefficient, row.mach) - 1.0)
+        })
+        .collect();
+    let rms = (off.iter().map(|one| one * one).sum::<f64>() / off.len() as f64).sqrt();
+    let mean = off.iter().sum::<f64>() / off.len() as f64;
+    let message = found.unwrap();
+    assert!(message.contains(&format!("the table is {rms:.1} % of drag off")), "{rms} {message}");
+    assert!(message.contains(&format!("mean {mean:+.1} %")), "{mean} {message}");
+}
