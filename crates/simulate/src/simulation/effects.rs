@@ -18,7 +18,7 @@ pub(super) fn effects_of_tail(
     planted: &mut Vec<Planted>,
 ) -> Result<Vec<(PlannedEffect, f64)>, PlanError> {
     let sized = |drawn: &DrawnEffect| {
-        check_engine(drawn.effect.id, aircraft)?;
+        check_engine(&drawn.effect, aircraft)?;
         let id = drawn.effect.id;
         let mean = drawn.effect.size.unwrap_or_else(|| id.typical_size(references.mass_kg));
         let size = check_within("effect size", id.unit(), drawn.factor * mean, -1e6, 1e6)?;
@@ -53,14 +53,21 @@ pub(super) fn effects_of_tail(
     Ok(effects)
 }
 
-fn check_engine(id: TruthEffect, aircraft: &AircraftTruth) -> Result<(), PlanError> {
-    match id {
-        TruthEffect::Library(EffectId::TsfcEngine(k) | EffectId::FuelFlowGainEngine(k))
-            if usize::from(k) > aircraft.engines() =>
-        {
-            Err(PlanError::Engine { effect: id.to_string(), engines: aircraft.engines() })
+fn check_engine(effect: &PlannedEffect, aircraft: &AircraftTruth) -> Result<(), PlanError> {
+    let (engine, is_step) = match effect.id {
+        TruthEffect::Library(EffectId::TsfcEngine(k) | EffectId::FuelFlowGainEngine(k)) => {
+            (Some(k), false)
         }
-        _ => Ok(()),
+        TruthEffect::Library(EffectId::StepChange) => (effect.target.engine(), true),
+        _ => (None, false),
+    };
+    let engines = aircraft.engines();
+    match engine.filter(|engine| usize::from(*engine) > engines) {
+        Some(k) if is_step => {
+            Err(PlanError::Engine { effect: format!("{} of engine {k}", effect.id), engines })
+        }
+        Some(_) => Err(PlanError::Engine { effect: effect.id.to_string(), engines }),
+        None => Ok(()),
     }
 }
 

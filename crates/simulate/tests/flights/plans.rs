@@ -232,6 +232,10 @@ fn wrong_plans_are_refused_by_name() {
             .contains("tsfc_engine_3 on an aircraft with 2 engines")
     );
     assert!(
+        with(r#"effects: [(id: "step_change", size: 1.0, target: engine_4)],"#)
+            .contains("step_change of engine 4 on an aircraft with 2 engines")
+    );
+    assert!(
         with("recording: (longest_step_s: 5.0),")
             .contains("simulation step 5 s outside 0.01..=1 s")
     );
