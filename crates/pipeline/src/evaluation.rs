@@ -16,7 +16,7 @@ use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
 use crate::statistics::{ErrorStatistics, NORMAL_95, mean_half_width95_by_flight};
 use crate::summary::{ErrorsSummary, TailSummary};
-use crate::whole_model::{Predicts, SegmentHeld, error_percent_of};
+use crate::whole_model::{HeldByTable, Predicts, SegmentHeld, error_percent_of};
 
 /// One tail at the end of a run.
 #[derive(Clone, Debug)]
@@ -353,11 +353,11 @@ fn announced_by_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<Announc
     }
     let inside =
         all().filter(|held| held.gap.abs() <= NORMAL_95 * held.prediction.variance().sqrt());
-    let mut variance = WholePrediction::variance_of_mean(all().map(|held| &held.prediction));
+    let predictions: Vec<_> = all().map(|held| &held.prediction).collect();
+    let mut variance = whole.variance_of_mean(&predictions);
     for flight in flights.iter().filter(|flight| !flight.is_empty()) {
-        let predictions = || flight.iter().map(|held| &held.prediction);
-        let own = WholePrediction::variance_of_flight(predictions())
-            - WholePrediction::variance_of_mean(predictions());
+        let predictions: Vec<_> = flight.iter().map(|held| &held.prediction).collect();
+        let own = WholePrediction::own_variance_of_flight(&predictions);
         variance += (flight.len() as f64 / count as f64).powi(2) * own;
     }
     Some(Announced {
@@ -371,21 +371,11 @@ fn announced_by_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<Announc
 /// without a segment inside the table.
 fn coverage(model: &ModelFile, segments: &[Segment]) -> Option<f64> {
     let posterior = model.posterior()?;
-    let mut inside = 0_usize;
-    let mut all = 0_usize;
-    for segment in segments {
-        let Ok(observation) = model.initial.observe(segment) else { continue };
-        let grid = posterior.drag().grid();
-        let Ok(cell) =
-            grid.locate(observation.lift_coefficient, observation.mach, lut::Outside::Error)
-        else {
-            continue;
-        };
-        let deviation = posterior.segment_variance(&cell, &observation.variance).sqrt();
-        let initial = posterior.initial().interpolate(&cell);
-        let excess = (observation.drag_coefficient - posterior.drag().interpolate(&cell)) / initial;
+    let held = segments.iter().filter_map(|one| HeldByTable::new(&model.initial, posterior, one));
+    let (mut inside, mut all) = (0_usize, 0_usize);
+    for held in held {
         all += 1;
-        inside += usize::from(excess.abs() <= NORMAL_95 * deviation);
+        inside += usize::from(held.excess.abs() <= NORMAL_95 * held.deviation);
     }
     (all > 0).then(|| inside as f64 / all as f64)
 }

@@ -7,7 +7,6 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::WholePrediction;
 use flight::{FlightIdentity, Segment};
 
 use crate::columns::Columns;
@@ -16,7 +15,7 @@ use crate::learning::{LearningAgain, LearningError};
 use crate::model_file::{LedgerEntry, ModelFile};
 use crate::segments_table::Evaluated;
 use crate::statistics::NORMAL_95;
-use crate::whole_model::{Predicts, SegmentHeld};
+use crate::whole_model::{HeldByTable, Predicts, SegmentHeld};
 
 /// What the model that predicted a flight knew of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,43 +62,55 @@ pub struct FlightResiduals {
     pub expected: Option<ExpectedErrors>,
 }
 
-/// How far the whole model expects to err on one new flight.
+/// How far a model expects to err on one new flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExpectedErrors {
     /// Of each segment; `None` outside its table or a domain.
     pub segments: Vec<Option<ExpectedError>>,
-    /// Half the width of the 95 % interval of the flight's mean error, %.
+    /// Half the width of the 95 % interval of the flight's mean error, %; `None` where a table alone predicts.
     pub flight_half_width95_percent: Option<f64>,
 }
 
-/// How far the whole model expects to err on one new segment.
+/// How far a model expects to err on one new segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExpectedError {
     /// Half the width of the 95 % interval of its error, %.
     pub half_width95_percent: f64,
-    /// Whether it lies beyond what the flights that were learnt have flown.
-    pub beyond_flights: bool,
+    /// Whether it lies beyond what the flights that were learnt have flown; `None` where a table alone predicts.
+    pub beyond_flights: Option<bool>,
 }
 
 impl ExpectedErrors {
-    /// Of the segments of one flight; `None` where a table alone predicts.
+    /// Of the segments of one flight: by the whole model, or by a table of law `bayes`; `None` where neither is there.
     fn new(model: &ModelFile, predicts: Predicts, segments: &[Segment]) -> Option<Self> {
-        let whole = model.whole(predicts)?;
+        let Some(whole) = model.whole(predicts) else { return Self::by_table(model, segments) };
         let held: Vec<Option<SegmentHeld>> =
             segments.iter().map(|one| SegmentHeld::new(&whole, &model.initial, one)).collect();
         let half = |variance: f64| 100.0 * NORMAL_95 * variance.sqrt();
         let of_segment = |held: &SegmentHeld| ExpectedError {
             half_width95_percent: half(held.prediction.variance()),
-            beyond_flights: held.prediction.beyond_flights,
+            beyond_flights: Some(held.prediction.beyond_flights),
         };
         let of_flight = || {
-            let predictions = || held.iter().flatten().map(|held| &held.prediction);
-            predictions().next()?;
-            Some(half(WholePrediction::variance_of_flight(predictions())))
+            let predictions: Vec<_> = held.iter().flatten().map(|held| &held.prediction).collect();
+            (!predictions.is_empty()).then(|| half(whole.variance_of_flight(&predictions)))
         };
         Some(Self {
             segments: held.iter().map(|held| held.as_ref().map(of_segment)).collect(),
             flight_half_width95_percent: of_flight(),
+        })
+    }
+
+    fn by_table(model: &ModelFile, segments: &[Segment]) -> Option<Self> {
+        let posterior = model.posterior()?;
+        let of_segment = |segment| {
+            let held = HeldByTable::new(&model.initial, posterior, segment)?;
+            let half_width95_percent = 100.0 * NORMAL_95 * held.fuel_flow_deviation;
+            Some(ExpectedError { half_width95_percent, beyond_flights: None })
+        };
+        Some(Self {
+            segments: segments.iter().map(of_segment).collect(),
+            flight_half_width95_percent: None,
         })
     }
 }
@@ -206,9 +217,12 @@ pub fn columns(flights: &[(&[Segment], &FlightResiduals)]) -> Columns {
     columns.number("fuel_flow_kg_s", mean(|means| means.fuel_flow_total_kg_s));
     columns.number("predicted_fuel_flow_kg_s", said(|e| e.predicted_fuel_flow_kg_s));
     columns.number("error_percent", said(|e| e.error_percent));
-    let expected = |of: fn(ExpectedError) -> f64| rows.iter().map(move |row| row.expected.map(of));
-    columns.number("error_half_width95_percent", expected(|e| e.half_width95_percent));
-    columns.number("beyond_flights", expected(|e| f64::from(u8::from(e.beyond_flights))));
+    let expected = |of: fn(ExpectedError) -> Option<f64>| {
+        rows.iter().map(move |row| row.expected.and_then(of))
+    };
+    columns.number("error_half_width95_percent", expected(|e| Some(e.half_width95_percent)));
+    let beyond = |e: ExpectedError| e.beyond_flights.map(|beyond| f64::from(u8::from(beyond)));
+    columns.number("beyond_flights", expected(beyond));
     columns.number("flight_mean_error_percent", rows.iter().map(|row| row.flight));
     columns
         .number("flight_mean_half_width95_percent", rows.iter().map(|row| row.flight_half_width95));

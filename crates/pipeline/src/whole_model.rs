@@ -1,10 +1,10 @@
 //! What a model predicts with everything that it has learnt, or with its drag table alone.
 
-use adapt::bayes::{BayesSettings, BayesState, InitialError, SolveError};
+use adapt::bayes::{BayesSettings, BayesState, InitialError, Posterior, SolveError};
 use diagnose::{TableUncertainty, TableUncertaintyError, WholeModel, WholePrediction};
 use effects::ExtendedModel;
 use flight::Segment;
-use lut::Table;
+use lut::{Outside, Table};
 
 use crate::model_file::ModelFile;
 
@@ -64,6 +64,39 @@ impl SegmentHeld {
         let corrected = model.corrected_means(&segment.means).ok()?;
         let gap = corrected.fuel_flow_total_kg_s.ln() - prediction.ln_fuel_flow;
         gap.is_finite().then_some(Self { gap, prediction })
+    }
+}
+
+/// A segment held against a table of law `bayes`, relative to the initial drag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeldByTable {
+    /// Recorded less predicted drag.
+    pub(crate) excess: f64,
+    /// Standard deviation of it that the law states.
+    pub(crate) deviation: f64,
+    /// The same of fuel flow, relative to what is predicted: fuel flow goes with drag.
+    pub(crate) fuel_flow_deviation: f64,
+}
+
+impl HeldByTable {
+    /// `None` outside the table or a domain.
+    pub(crate) fn new(
+        model: &ExtendedModel,
+        posterior: &Posterior,
+        segment: &Segment,
+    ) -> Option<Self> {
+        let observation = model.observe(segment).ok()?;
+        let (lift_coefficient, mach) = (observation.lift_coefficient, observation.mach);
+        let grid = posterior.drag().grid();
+        let cell = grid.locate(lift_coefficient, mach, Outside::Error).ok()?;
+        let deviation = posterior.segment_variance(&cell, &observation.variance).sqrt();
+        let (initial, drag) =
+            (posterior.initial().interpolate(&cell), posterior.drag().interpolate(&cell));
+        Some(Self {
+            excess: (observation.drag_coefficient - drag) / initial,
+            deviation,
+            fuel_flow_deviation: deviation * initial / drag,
+        })
     }
 }
 

@@ -141,3 +141,28 @@ fn residuals_state_how_far_the_whole_model_expects_to_err() {
     evaluate(&initial, &reports[8..], "-o", &table);
     assert!(csv_columns(&table)["error_half_width95_percent"].iter().all(String::is_empty));
 }
+
+/// Three flights teach a table alone: the share of errors within what it states of each segment is the coverage of the summary.
+#[test]
+fn a_table_of_few_flights_states_how_far_it_expects_to_err() {
+    let scratch = tempfile::tempdir().unwrap();
+    let initial = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    let reports: Vec<PathBuf> = (1..=12).map(report).collect();
+    adapt(&initial, &output, &reports[..3], &[]).expect(0);
+    let model = output.join("models/SIM-01.ron");
+    let (table, json) = (scratch.path().join("residuals.csv"), scratch.path().join("summary.json"));
+    evaluate(&model, &reports[8..], "-o", &table);
+    evaluate(&model, &reports[8..], "--json", &json);
+    let columns = csv_columns(&table);
+    let (errors, halves) =
+        (numbers(&columns, "error_percent"), numbers(&columns, "error_half_width95_percent"));
+    let inside = errors.iter().zip(&halves).filter(|(error, half)| error.abs() <= **half).count();
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    let stated = summary["tails"][0]["interval95_coverage"].as_f64().unwrap();
+    assert!((inside as f64 / errors.len() as f64 - stated).abs() < 1e-9, "{inside} {stated}");
+    for unknown in ["beyond_flights", "flight_mean_half_width95_percent"] {
+        assert!(columns[unknown].iter().all(String::is_empty), "{unknown}");
+    }
+}
