@@ -45,7 +45,7 @@ pub fn attainable(
     let (reference, model) = (input.reference(), input.effect_model(references)?);
     let (data, library) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
-            let dates = DateGrid::coarse(starts, input.events_s, None, 0);
+            let dates = DateGrid::coarse(starts, input.events_s, None);
             Library::new(&model, points, engines, dates, |_| true)
         });
     let design = Design::new(&data, &references, input.baseline, input.table);

@@ -287,17 +287,21 @@ impl Baseline {
         terms.iter().zip(&self.parts.mean).map(|(term, mean)| term * mean).sum()
     }
 
-    /// Writes the remainder's terms at the state that was flown. The baseline's own references hold. Returns the variance of
-    /// the smooth functions that the terms do not hold: where nothing was flown.
-    pub(crate) fn write_remainder(&self, response: &Response, into: &mut [f64]) -> f64 {
+    /// Writes the remainder's terms at the state that was flown. The baseline's own references hold. Returns what they leave.
+    pub(crate) fn write_remainder(&self, response: &Response, into: &mut [f64]) -> LeftOfSmooth {
         let smooth = &self.parts.smooth;
-        let mut left = 0.0;
+        let mut left = LeftOfSmooth::default();
         let mut at = 1;
         let mut scaled = Vec::with_capacity(smooth.len());
         into[0] = 1.0;
         for one in smooth {
             let value = flown(one.variable(), response, &self.parts.references);
-            left += one.write(value, &mut into[at..at + one.len()]);
+            let of_this = self.smooth_variance() * one.write(value, &mut into[at..at + one.len()]);
+            if one.is_beyond(value) {
+                left.beyond += of_this;
+            } else {
+                left.between_knots += of_this;
+            }
             scaled.push(one.at(value).clamp(-FARTHEST_PRODUCT, FARTHEST_PRODUCT));
             at += one.len();
         }
@@ -307,7 +311,22 @@ impl Baseline {
                 at += 1;
             }
         }
-        left * self.smooth_variance()
+        left
+    }
+
+    /// Where a state lies along each smooth function, lengths.
+    pub(crate) fn places(&self, response: &Response) -> impl Iterator<Item = f64> {
+        let references = &self.parts.references;
+        let smooth = self.parts.smooth.iter();
+        smooth.map(move |one| one.at(flown(one.variable(), response, references)))
+    }
+
+    /// Variance of the mean over states of what the smooth functions' terms leave between their knots; `places` are the states'
+    /// along each function.
+    pub(crate) fn left_of_mean(&self, places: &[Vec<f64>]) -> f64 {
+        let functions = self.parts.smooth.iter().zip(places);
+        self.smooth_variance()
+            * functions.map(|(one, places)| one.left_of_mean(places)).sum::<f64>()
     }
 
     /// Smooth functions of the remainder.
@@ -405,6 +424,15 @@ impl Baseline {
         let effect = &STANDING_EFFECTS[carried];
         effect.deviation * self.parts.references.typical_size(effect.id)
     }
+}
+
+/// Variance of the smooth functions that their terms do not hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LeftOfSmooth {
+    /// Within what was flown, from knot to knot another.
+    pub(crate) between_knots: f64,
+    /// Where nothing was flown.
+    pub(crate) beyond: f64,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]

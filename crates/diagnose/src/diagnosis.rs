@@ -21,7 +21,7 @@ use crate::judge::table::is_table_off;
 use crate::judge::verdict::{Findings, advisor, level_like, named_gap, verdict};
 use crate::library::Library;
 use crate::library::dates::{DateGrid, is_dated};
-use crate::library::engine_changes::engines_change;
+use crate::library::engine_changes::SingleEngines;
 use crate::output::addition::Addition;
 use crate::output::form::{ActsOn, FoundForm};
 use crate::output::note::{LeftOutReason, Note};
@@ -71,9 +71,13 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
             input.reference(),
             |points, engines, starts| {
                 let dates = kept.unwrap_or_else(|| {
-                    let of_engines = engines && engines_change(input.flights);
-                    let alone = if of_engines { model.aircraft().engines() } else { 0 };
-                    DateGrid::coarse(starts, input.events_s, right_at_s, alone)
+                    let dates = DateGrid::coarse(starts, input.events_s, right_at_s);
+                    match engines {
+                        SingleEngines::Change => {
+                            dates.with_single_engines(model.aircraft().engines())
+                        }
+                        SingleEngines::Alike | SingleEngines::NotRecorded => dates,
+                    }
                 });
                 Library::new(&model, points, engines, dates, chosen)
             },

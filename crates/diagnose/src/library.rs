@@ -6,6 +6,7 @@ use flight::effect::{
 };
 
 use crate::library::dates::DateGrid;
+use crate::library::engine_changes::SingleEngines;
 use crate::priors::{
     AGNOSTIC_SPIKES, BACKGROUND_SPIKES, BOOK_AGNOSTIC_SPIKES, BOOK_OTHER_EFFECTS, BOOK_SPIKES,
     DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE, THROTTLE_PIVOTS,
@@ -75,7 +76,7 @@ impl Library {
     pub(crate) fn new(
         model: &EffectModel<'_>,
         points: &[EffectPoint],
-        engines_recorded: bool,
+        engines: SingleEngines,
         dates: DateGrid,
         chosen: impl Fn(EffectId) -> bool,
     ) -> Self {
@@ -94,7 +95,7 @@ impl Library {
             if !chosen(id) || model.applied().is_some_and(|applied| applied.settles(id)) {
                 continue;
             }
-            if let Some(needs) = lacking(id, points, engines_recorded) {
+            if let Some(needs) = lacking(id, points, engines) {
                 library.not_testable.push((id, needs));
             } else if id == EffectId::FuelHeatingValue {
                 library.heating_value = true;
@@ -179,9 +180,10 @@ pub(crate) const fn acts_at_all_times(id: EffectId) -> bool {
 fn lacking(
     id: EffectId,
     points: &[EffectPoint],
-    engines_recorded: bool,
+    engines: SingleEngines,
 ) -> Option<Vec<NeededInput>> {
-    if matches!(id, EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_)) && !engines_recorded
+    if matches!(id, EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_))
+        && engines == SingleEngines::NotRecorded
     {
         return Some(vec![NeededInput::FuelFlowPerEngine]);
     }

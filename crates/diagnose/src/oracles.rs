@@ -46,8 +46,8 @@ fn with_system(flights: &[Vec<Segment>], check: impl FnOnce(&Problem<'_>)) {
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
     let references = references_of(&model, model.drag_table(), &records).unwrap();
     let effects = EffectModel::new(&model, model.drag_table(), references).unwrap();
-    let library_of = |points: &[EffectPoint], engines: bool, starts: &[f64]| {
-        let dates = DateGrid::coarse(starts, &[], None, 0);
+    let library_of = |points: &[EffectPoint], engines, starts: &[f64]| {
+        let dates = DateGrid::coarse(starts, &[], None);
         Library::new(&effects, points, engines, dates, |_| true)
     };
     let (data, library) =

@@ -92,6 +92,9 @@ deciding_numbers! {
         UNPROVEN_SHARE: f64 = 0.5, "",
             "share of its probability that a name keeps where the interval of its closure on unseen flights holds zero",
             OurChoice "A name that other flights do not bear out is not more probable than not.";
+        SHARE_AT_ITS_PLACE: f64 = 0.85, "",
+            "the same of an effect of one engine, or of a switch, where the first place is that engine or switch",
+            OurChoice "The place bears it out; below 0.9, with which nothing is named whose closure may be none.";
         CLOSES: f64 = 0.9, "of the explainable gap",
             "upper end of a name's closure on unseen flights below which a more probable cause outside the library is the verdict",
             OurChoice "Nine tenths: what the library names closes 0.94 and more in whatever form, what it lacks a quarter.";
@@ -168,6 +171,9 @@ deciding_numbers! {
         ALIKE_NEIGHBORS: f64 = 0.5, "of these",
             "share of them from which a segment that is off as they are is no outlier",
             OurChoice "Half: a gap of a range that was flown, not of a recording. Of a tenth that is off at random, one in 600 has as many.";
+        NEIGHBORS_AS_THIS: f64 = 0.75, "of these",
+            "share of them that leave rather what a segment leaves than what its flight has in common, from which it is no outlier",
+            OurChoice "More than a half, which neighbors about the middle of both would be by chance: beside a gap that begins nearby.";
         HEAVY_KURTOSIS: f64 = 4.0, "",
             "kurtosis of the whitened residuals above which segments are weighted",
             OurChoice "A normal distribution has 3. Weights cost information, so that they need a reason.";
@@ -238,6 +244,9 @@ deciding_numbers! {
         SECOND_CONDITION: f64 = 1.15, "",
             "factor by which a second condition must raise the statistic",
             OurChoice "A simpler region is easier to use.";
+        LARGER_IN_A_PLACE: f64 = 1.1, "times the mean gap outside",
+            "mean gap in a place from which on the gap lies there",
+            OurChoice "A tenth more: what is less of a uniform gap is no place where one would look.";
         LEAST_SHARE: f64 = 0.005, "",
             "least share of the explainable gap in a region of all engines",
             OurChoice "Less is 0 % in words: what lies there is made up for within it.";

@@ -39,6 +39,8 @@ pub(crate) struct NuisanceLayout {
     pub(crate) beyond: Range<usize>,
     /// Contrasts between engines that drift.
     pub(crate) drift: Range<usize>,
+    /// Level of N2 of an aircraft that did not teach the model.
+    pub(crate) n2_level: Range<usize>,
 }
 
 /// What is uncertain besides a baseline.
@@ -56,6 +58,8 @@ pub(crate) struct Uncertain {
     pub(crate) beyond: usize,
     /// Contrasts between engines, where they may drift.
     pub(crate) drift: usize,
+    /// Levels of N2, where engines of another aircraft than the one that taught the model may turn faster or slower.
+    pub(crate) n2_level: usize,
 }
 
 impl NuisanceLayout {
@@ -67,6 +71,7 @@ impl NuisanceLayout {
             DECK_TERMS,
             STANDING_EFFECTS.len(),
             drag,
+            0,
             0,
             0,
             0,
@@ -98,11 +103,12 @@ impl NuisanceLayout {
             uncertain.table_rank,
             uncertain.beyond,
             uncertain.drift,
+            uncertain.n2_level,
         ])
     }
 
     /// Widths in the order of the fields.
-    fn tiled(widths: [usize; 12]) -> Self {
+    fn tiled(widths: [usize; 13]) -> Self {
         let mut end = 0;
         let mut widths = widths.into_iter();
         let mut next = || {
@@ -123,12 +129,13 @@ impl NuisanceLayout {
             table: next(),
             beyond: next(),
             drift: next(),
+            n2_level: next(),
         }
     }
 
     /// Number of columns.
     pub(crate) const fn len(&self) -> usize {
-        self.drift.end
+        self.n2_level.end
     }
 
     /// Columns of a baseline's coefficients: those that its covariance is over.
@@ -157,6 +164,7 @@ mod tests {
             &layout.table,
             &layout.beyond,
             &layout.drift,
+            &layout.n2_level,
         ] {
             for column in range.clone() {
                 owners[column] += 1;
@@ -178,6 +186,7 @@ mod tests {
                     table_rank,
                     beyond: 6,
                     drift: contrasts,
+                    n2_level: usize::from(any),
                     ..Uncertain::default()
                 };
                 let design = NuisanceLayout::of_design(Some(&baseline), uncertain);
@@ -185,7 +194,7 @@ mod tests {
                 // What a baseline's covariance is over has the same places in the design.
                 assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
                 assert_eq!(design.standing_effects, baseline.standing_effects);
-                let others = CHORD_COLUMNS + 1 + 2 * usize::from(any) + table_rank + 6 + contrasts;
+                let others = CHORD_COLUMNS + 1 + 3 * usize::from(any) + table_rank + 6 + contrasts;
                 assert_eq!(design.len(), baseline.len() + others);
             }
         }

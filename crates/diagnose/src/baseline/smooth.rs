@@ -10,6 +10,8 @@ use crate::math::vector_ln_exp::exp;
 use crate::priors::{LEAST_SCALE_BEYOND_MACH, SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
 use faer::Mat;
 
+mod mean;
+
 /// Share of a knot's variance that keeps the kernel's matrix positive definite in doubles.
 const JITTER: f64 = 1e-6;
 
@@ -191,7 +193,11 @@ impl Smooth {
 
     /// Writes the terms at a value; returns the share of the process' variance that they do not hold.
     pub(crate) fn write(&self, value: f64, into: &mut [f64]) -> f64 {
-        let z = self.at(value);
+        self.write_at(self.at(value), into)
+    }
+
+    /// The same at a place in lengths.
+    fn write_at(&self, z: f64, into: &mut [f64]) -> f64 {
         into[0] = z;
         let terms = &mut into[1..=self.text.count];
         self.write_kernels(z, terms);

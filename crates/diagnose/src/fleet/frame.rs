@@ -99,15 +99,16 @@ impl<'a> FleetFrame<'a> {
                 // `monitor` looks for what has dates of its own on every tail.
                 && !is_dated(id)
         };
-        let (data, library) = PreparedFlights::prepare(
+        let (mut data, library) = PreparedFlights::prepare(
             &model,
             &flights,
             input.reference(),
             |points, engines, starts| {
-                let dates = DateGrid::coarse(starts, &[], None, 0);
+                let dates = DateGrid::coarse(starts, &[], None);
                 Library::new(&model, points, engines, dates, chosen)
             },
         );
+        data.of_other_aircraft = model_of == ModelOf::Type;
         let design = Design::new(&data, &references, input.baseline, input.table);
         let columns: Vec<usize> =
             library.effects.iter().map(|effect| effect.representative).collect();

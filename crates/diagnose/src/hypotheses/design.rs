@@ -18,7 +18,8 @@ use crate::hypotheses::design::blocks::agnostic_blocks;
 use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
 use crate::hypotheses::design::smooth_background::SmoothBackground;
 use crate::priors::{
-    BLEED_DEVIATION, DECK_DEVIATION, ENGINES_APART_PERCENT_PER_YEAR, GAUGE_GAIN_DEVIATION,
+    BLEED_DEVIATION, DECK_DEVIATION, ENGINES_APART_PERCENT_PER_YEAR, FLEET_N2_LEVEL,
+    GAUGE_GAIN_DEVIATION,
 };
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
@@ -73,6 +74,7 @@ impl<'a> Design<'a> {
         let uncertain = Uncertain {
             beyond: beyond.len(),
             drift: if data.engines_change { data.channels.contrasts } else { 0 },
+            n2_level: usize::from(data.channels.n2 && data.of_other_aircraft && baseline.is_some()),
             deck: data.channels.n2,
             bleed: data.channels.n2 && data.segments.iter().any(is_bled),
             gauges: data.flights.iter().any(|flight| flight.gauge.is_some()),
@@ -251,7 +253,9 @@ impl<'a> Design<'a> {
             }
             rows.put(column, &values);
         }
-        for (column, term) in columns(&layout.deck).zip(row.deck) {
+        let terms = columns(&layout.deck).zip(row.deck);
+        let level = columns(&layout.n2_level).map(|column| (column, FLEET_N2_LEVEL));
+        for (column, term) in terms.chain(level) {
             let mut values = [0.0; MAXIMUM_CHANNELS];
             if channels.n2 && row.is_recorded[channels.n2_row()] {
                 values[channels.n2_row()] = term;
@@ -321,6 +325,11 @@ impl<'a> Design<'a> {
     /// Columns of what the drag table does not know; empty where that is not given.
     pub(crate) fn table_columns(&self) -> Range<usize> {
         self.nuisance_columns(&self.nuisance_parts.layout.table)
+    }
+
+    /// Columns of how far the drag table's chords are off.
+    pub(crate) fn chord_columns(&self) -> Range<usize> {
+        self.nuisance_columns(&self.nuisance_parts.layout.chords)
     }
 
     /// The baseline, where there is one.

@@ -20,7 +20,7 @@ use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
     LARGEST_REST, LEAST_OF_A_FORM, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM,
-    OUTSIDE_PROBABILITY, SMALLEST_GAP_PERCENT, SURE_P_VALUE, UNPROVEN_SHARE,
+    OUTSIDE_PROBABILITY, SHARE_AT_ITS_PLACE, SMALLEST_GAP_PERCENT, SURE_P_VALUE, UNPROVEN_SHARE,
 };
 
 /// What a decision is made from.
@@ -85,12 +85,11 @@ pub(crate) fn detect(
     // Nor is it scatter that has a place.
     let no_scatter = is_scatter && table.is_none() && (has_a_place || !*nothing_predicted);
     // A scatter closes nothing, but what is named with it must not make unseen flights worse.
-    let unproven = no_scatter
-        || refuted_table
-        || surely_makes_worse(unseen)
-        || may_close_nothing(unseen.filter(|_| !is_scatter));
-    if table.is_none() && (leaves_most || unproven) {
-        outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
+    let is_refuted = leaves_most || no_scatter || surely_makes_worse(unseen);
+    let is_doubted = refuted_table || may_close_nothing(unseen.filter(|_| !is_scatter));
+    if table.is_none() {
+        let keeps = kept_by_name(library, input, is_refuted, is_doubted);
+        outside.probability = 1.0 - keeps * (1.0 - outside.probability);
     }
     // Where no name holds more than half and neither size nor p-value shows a gap, nothing is said to be there.
     let is_sure = gap.p_value < SURE_P_VALUE;
@@ -118,9 +117,10 @@ pub(crate) fn detect(
         is_seen && (is_told || !is_vague(gap, outside, top, taught && makes_worse(unseen)));
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
-    // functions, and may be all of a large gap: the form that describes it is asked then.
+    // functions, and may be all of a large gap: the form that describes it is asked then. What is surely no noise is told anyhow.
     let has_no_witness = stands_out
         && taught
+        && !is_sure
         && !(lies_at_an_engine || has_a_place)
         && is_outside
         && *nothing_predicted;
@@ -130,6 +130,23 @@ pub(crate) fn detect(
     };
     let detected = input.is_real && (table.is_some() || (stands_out && is_borne_out));
     Detection { detected, table: table.filter(|_| detected), smooth_term, forms }
+}
+
+/// Share of its probability that a name keeps which other flights refute, or leave in doubt.
+fn kept_by_name(
+    library: &Library,
+    input: &DetectionInput<'_>,
+    is_refuted: bool,
+    is_doubted: bool,
+) -> f64 {
+    let id = input.posteriors.first().map(|top| id_of(library, top.effect));
+    let is_at_its_place =
+        id.is_some_and(|id| input.places.is_some_and(|places| places.lead_to(id)));
+    match (is_refuted, is_doubted) {
+        (false, false) => 1.0,
+        (false, true) if is_at_its_place => SHARE_AT_ITS_PLACE,
+        _ => UNPROVEN_SHARE,
+    }
 }
 
 /// Whether a gap is what a taught model announces of its own errors: no name shrinks it on unseen flights, and none is more probable

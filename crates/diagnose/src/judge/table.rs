@@ -8,6 +8,7 @@ use crate::output::Magnitude;
 use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
+use crate::signals::table_uncertainty::TableUncertainty;
 use crate::thresholds::{FLEXIBLE_EFFECT, MORE_PROBABLE_THAN_NOT, NORMAL_95};
 
 /// What is found of a guide's table.
@@ -45,7 +46,7 @@ pub(crate) struct FittedTable {
     /// Columns of the library that were fitted with it: what no table can hold, and its sizes.
     pub(crate) columns: Vec<usize>,
     pub(crate) sizes: Vec<f64>,
-    /// Coefficients of the table's columns.
+    /// Coefficients of the table's columns, then of its chords.
     coefficients: Vec<f64>,
 }
 
@@ -70,22 +71,38 @@ impl FittedTable {
     ) -> Option<Self> {
         let (columns, deviations) = columns(system, library, named);
         let solution = gram.fit(&columns, &deviations, system.design.residual())?;
-        let of_table = system.design.table_columns();
-        let in_table = columns.iter().enumerate().filter(|(_, column)| of_table.contains(column));
+        let size_of = |of_table: usize| {
+            let at = columns.iter().position(|column| *column == of_table);
+            at.map_or(0.0, |k| solution[(k, 0)])
+        };
         Some(Self {
             columns: named.to_vec(),
             sizes: (0..named.len()).map(|k| solution[(k, 0)]).collect(),
-            coefficients: in_table.map(|(k, _)| solution[(k, 0)]).collect(),
+            coefficients: columns_of_table(system).map(size_of).collect(),
         })
     }
 
     /// By how much the table's drag is off at a segment, ln.
     pub(crate) fn drag_at(&self, system: &WhitenedSystem<'_>, row: &SegmentRow) -> f64 {
-        let Some(table) = system.design.table() else { return 0.0 };
-        let mut loadings = vec![0.0; table.rank()];
-        table.write(&row.response, &mut loadings);
+        let loadings = loadings(system, row);
         loadings.iter().zip(&self.coefficients).map(|(loading, size)| loading * size).sum()
     }
+}
+
+/// Columns of a table's nodes, then of its chords: where flights lie within one or two cells the two are fitted against each other,
+/// and neither says anything without the other.
+fn columns_of_table(system: &WhitenedSystem<'_>) -> impl Iterator<Item = usize> {
+    system.design.table_columns().chain(system.design.chord_columns())
+}
+
+/// What a segment's drag leans on, in the order of [`columns_of_table`].
+fn loadings(system: &WhitenedSystem<'_>, row: &SegmentRow) -> Vec<f64> {
+    let mut loadings = vec![0.0; system.design.table().map_or(0, TableUncertainty::rank)];
+    if let Some(table) = system.design.table() {
+        table.write(&row.response, &mut loadings);
+    }
+    loadings.extend(row.chords);
+    loadings
 }
 
 /// Probability that a guide's table is off.
@@ -118,34 +135,27 @@ fn columns(
 
 /// Root mean square of the table's error over what was flown, with its interval by linear propagation.
 fn magnitude(system: &WhitenedSystem<'_>, library: &Library, named: &[usize]) -> Option<Magnitude> {
-    let table = system.design.table()?;
     let gram = system.gram(None);
     let fitted = FittedTable::of_columns(system, library, gram, named)?;
     let segments = &system.data.segments;
     let count = segments.len() as f64;
     let mut square = 0.0;
-    let mut slope = vec![0.0; table.rank()];
-    let mut loadings = vec![0.0; table.rank()];
+    let mut slope = vec![0.0; fitted.coefficients.len()];
     for row in segments {
-        table.write(&row.response, &mut loadings);
         let error = fitted.drag_at(system, row);
         square += error * error / count;
-        for (slope, loading) in slope.iter_mut().zip(&loadings) {
+        for (slope, loading) in slope.iter_mut().zip(loadings(system, row)) {
             *slope += error * loading / count;
         }
     }
     let rms = square.sqrt();
     // d rms/d coefficient = Σ error·loading/(n·rms); its variance by the posterior covariance of all that was fitted.
     let (all, deviations) = columns(system, library, named);
-    let of_table = system.design.table_columns();
-    let right: Vec<f64> = all
-        .iter()
-        .map(
-            |column| {
-                if of_table.contains(column) { slope[column - of_table.start] / rms } else { 0.0 }
-            },
-        )
-        .collect();
+    let slope_along = |column: &usize| {
+        let at = columns_of_table(system).position(|of_table| of_table == *column);
+        at.map_or(0.0, |k| slope[k] / rms)
+    };
+    let right: Vec<f64> = all.iter().map(slope_along).collect();
     let variance = gram.variance(&all, &deviations, &right)?;
     let half = NORMAL_95 * variance.sqrt();
     let [value, low, high] = [rms, (rms - half).max(0.0), rms + half].map(|share| 100.0 * share);

@@ -111,7 +111,7 @@ impl Baseline {
                     &effect_model,
                     points,
                     engines,
-                    DateGrid::coarse(starts, &[], None, 0),
+                    DateGrid::coarse(starts, &[], None),
                     |_| false,
                 )
             },

@@ -220,7 +220,7 @@ mod tests {
             &records,
             Reference::Untaught,
             |points, engines, starts| {
-                let dates = DateGrid::coarse(starts, &[], None, 0);
+                let dates = DateGrid::coarse(starts, &[], None);
                 Library::new(&effects, points, engines, dates, |_| false)
             },
         );

@@ -50,8 +50,8 @@ fn with_far_too_little_drag<T>(
     let effects = EffectModel::new(&model, &table, *taught.references())
         .unwrap()
         .between_nodes(BetweenNodes::Smooth);
-    let nothing = |points: &[_], engines: bool, starts: &[f64]| {
-        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None, 0), |_| false)
+    let nothing = |points: &[_], engines, starts: &[f64]| {
+        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
     };
     let baseline = held_against_baseline.then_some(&taught);
     let against = baseline.map_or(Reference::Untaught, Reference::Baseline);
@@ -167,8 +167,8 @@ pub(crate) fn with_exact_table<T>(
     let effects = EffectModel::new(&model, table, *taught.references())
         .unwrap()
         .between_nodes(BetweenNodes::Smooth);
-    let nothing = |points: &[_], engines: bool, starts: &[f64]| {
-        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None, 0), |_| false)
+    let nothing = |points: &[_], engines, starts: &[f64]| {
+        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
     };
     let (data, _) =
         PreparedFlights::prepare(&effects, &records, Reference::Baseline(&taught), nothing);

@@ -3,7 +3,7 @@
 use flight::effect::{EffectId, HiddenParameter, History, MAXIMUM_FALLS, StepTarget};
 use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 
-use crate::priors::{HISTORY_DATES, RECOVERED_COARSE, RECOVERED_FINE, STEP_DATES};
+use crate::priors::{HISTORY_DATES, MOST_USUAL_RATE, RECOVERED_COARSE, RECOVERED_FINE, STEP_DATES};
 
 /// Dates on either side of a leading one that are tried next.
 const NEIGHBOURS: usize = 4;
@@ -53,13 +53,8 @@ enum Stage {
 
 impl DateGrid {
     /// For flights that start at these instants. `reference_s` is the date at which the model is right, where it has learnt;
-    /// `events_s` are instants at which something is known to have been done; of the first `engines` engines, each may have changed alone.
-    pub(crate) fn coarse(
-        starts_s: &[f64],
-        events_s: &[f64],
-        reference_s: Option<f64>,
-        engines: usize,
-    ) -> Self {
+    /// `events_s` are instants at which something is known to have been done.
+    pub(crate) fn coarse(starts_s: &[f64], events_s: &[f64], reference_s: Option<f64>) -> Self {
         let mut starts = starts_s.to_vec();
         starts.sort_by(f64::total_cmp);
         let between_s: Vec<f64> = starts
@@ -75,10 +70,7 @@ impl DateGrid {
             events_s: events_s.iter().filter(among).copied().collect(),
             since_s: reference_s.map_or(first, |reference| reference.min(first)),
             span_years: (last - first) / (DAYS_PER_YEAR * SECONDS_PER_DAY),
-            targets: [StepTarget::FuelFlow, StepTarget::Drag]
-                .into_iter()
-                .chain(StepTarget::ENGINES.into_iter().take(engines))
-                .collect(),
+            targets: vec![StepTarget::FuelFlow, StepTarget::Drag],
             steps: nothing.clone(),
             engine: nothing.clone(),
             airframe: nothing,
@@ -93,6 +85,13 @@ impl DateGrid {
         grid.engine = histories.clone();
         grid.airframe = histories;
         grid
+    }
+
+    /// The same with steps of each of the first `engines` engines alone.
+    pub(crate) fn with_single_engines(mut self, engines: usize) -> Self {
+        self.targets.extend(StepTarget::ENGINES.into_iter().take(engines));
+        self.steps.tried = self.steps_at(&self.with_events(STEP_DATES));
+        self
     }
 
     /// Hidden parameters of an effect that are tried.
@@ -120,10 +119,10 @@ impl DateGrid {
     }
 
     /// The usual rate of a history whose entry says `typical`, %/year: at least what gathers in half of the flights' time to
-    /// as much as a usual fall takes back.
+    /// as much as a usual fall takes back, as far as there are such rates.
     pub(crate) fn typical_rate(&self, typical: f64, usual_fall_percent: f64) -> f64 {
         if self.span_years > 0.0 {
-            typical.max(usual_fall_percent / (0.5 * self.span_years))
+            typical.max((usual_fall_percent / (0.5 * self.span_years)).min(MOST_USUAL_RATE))
         } else {
             typical
         }

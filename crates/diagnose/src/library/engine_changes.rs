@@ -6,6 +6,28 @@ use crate::math::quantile::{MEDIAN_TO_DEVIATION, median};
 use crate::signals::record::FlightRecord;
 use crate::thresholds::{ENGINE_CHANGES, FEWEST_FLIGHTS_OF_A_REGION};
 
+/// What a set of flights shows of its single engines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SingleEngines {
+    /// One engine, or the flow of all together.
+    NotRecorded,
+    /// Each burns beside the others what it did before.
+    Alike,
+    /// One burns beside the others something else before and after some date.
+    Change,
+}
+
+impl SingleEngines {
+    /// What these flights show, of which `recorded` tells whether each engine has its own flow.
+    pub(crate) fn of(flights: &[FlightRecord<'_>], recorded: bool) -> Self {
+        match (recorded, engines_change(flights)) {
+            (false, _) => Self::NotRecorded,
+            (true, false) => Self::Alike,
+            (true, true) => Self::Change,
+        }
+    }
+}
+
 /// Whether, for some engine and some date, flights before and after it differ.
 ///
 /// ```text
@@ -14,7 +36,7 @@ use crate::thresholds::{ENGINE_CHANGES, FEWEST_FLIGHTS_OF_A_REGION};
 ///
 /// Engines that drift apart do as well: which of it fits is for the search to say. Without it, columns of steps cost time for
 /// nothing where engines stay as they are.
-pub(crate) fn engines_change(flights: &[FlightRecord<'_>]) -> bool {
+fn engines_change(flights: &[FlightRecord<'_>]) -> bool {
     let mut by_date: Vec<(f64, [f64; MAXIMUM_ENGINES])> = flights
         .iter()
         .filter_map(|flight| {

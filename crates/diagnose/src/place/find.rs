@@ -4,7 +4,9 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
+use effects::Variable;
 use faer::Mat;
+use flight::effect::EffectId;
 
 use crate::math::random::RandomStream;
 use crate::output::Slice;
@@ -91,6 +93,23 @@ impl FoundPlaces {
     /// Whether a place is so clear that the gap is no scatter from flight to flight, which has none.
     pub(crate) fn refute_scatter(&self) -> bool {
         self.regions.first().is_some_and(|slice| slice.p_value <= REFUTES_SCATTER)
+    }
+
+    /// Whether the first place is where this effect alone acts: one engine, or the switch of anti-ice.
+    pub(crate) fn lead_to(&self, id: EffectId) -> bool {
+        self.regions.first().is_some_and(|slice| {
+            let region = &slice.region;
+            match id {
+                EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_) => {
+                    region.engine.is_some()
+                }
+                EffectId::AntiIceBleed => {
+                    let variables = region.conditions.iter().map(|condition| condition.variable);
+                    region.engine.is_none() && variables.eq([Variable::AntiIce])
+                }
+                _ => false,
+            }
+        })
     }
 
     /// Whether one engine is apart from the others.

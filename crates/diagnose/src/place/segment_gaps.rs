@@ -61,7 +61,7 @@ pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGa
     // No column of the library is needed: residuals do not depend on what is searched.
     let (mut data, _) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
-            Library::new(&model, points, engines, DateGrid::coarse(starts, &[], None, 0), |_| false)
+            Library::new(&model, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
         });
     let is_outlier = |place: usize| shown.outliers.binary_search(&place).is_ok();
     let refused: Vec<bool> = (0..data.segments.len()).map(is_outlier).collect();

@@ -8,7 +8,7 @@ use crate::place::binned_variable::BinnedVariable;
 use crate::place::regions::{BinnedRegion, Series};
 use crate::search::system::WhitenedSystem;
 use crate::signals::channels::MAXIMUM_CHANNELS;
-use crate::thresholds::LEAST_SHARE;
+use crate::thresholds::{LARGER_IN_A_PLACE, LEAST_SHARE};
 
 /// Stream of random numbers: resamples of flights behind intervals.
 const INTERVAL_STREAM: u64 = 2;
@@ -168,13 +168,14 @@ impl Gaps {
         self.total[segment] + engine.map_or(0.0, |engine| self.apart[engine][segment])
     }
 
-    /// Whether the mean of fuel flow in a place is the larger, whatever its sign, than in all other segments. A place in which less
-    /// is amiss than elsewhere differs as clearly, and is none where the gap lies.
+    /// Whether the mean of fuel flow in a place is clearly larger, whatever its sign, than in all other segments. A place in which
+    /// less is amiss than elsewhere differs as clearly, and is none where the gap lies; nor is one in which a gap that is everywhere
+    /// is a trifle larger.
     pub(crate) fn is_larger_in(&self, members: &[usize]) -> bool {
         let inside: f64 = members.iter().map(|&segment| self.total[segment]).sum();
         let outside = self.total.iter().sum::<f64>() - inside;
         let (within, beyond) = (members.len(), self.total.len() - members.len());
-        inside.abs() * beyond as f64 >= outside.abs() * within as f64
+        inside.abs() * beyond as f64 >= LARGER_IN_A_PLACE * outside.abs() * within as f64
     }
 
     /// Share of the explainable gap; 0 where there is none.
@@ -236,6 +237,9 @@ mod tests {
         assert!(apart.is_larger_in(&[2]) && !apart.is_larger_in(&[0, 1]));
         let alike = gaps(&[0.03, 0.01, 0.01]);
         assert!(alike.is_larger_in(&[0, 1]) && !alike.is_larger_in(&[2]));
+        // 0.0210 to 0.02 is less than a tenth more, 0.0225 is more.
+        assert!(!gaps(&[0.0210, 0.02, 0.02]).is_larger_in(&[0]));
+        assert!(gaps(&[0.0225, 0.02, 0.02]).is_larger_in(&[0]));
     }
 
     #[test]

@@ -61,6 +61,7 @@ impl PreparedFlights<'_> {
             }],
             segments,
             engines_change: self.engines_change,
+            of_other_aircraft: self.of_other_aircraft,
             left_out: std::collections::BTreeMap::new(),
         })
     }

@@ -13,7 +13,7 @@ use perf_model::variance::mean_acceleration_deviation_m_s2;
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::library::Library;
-use crate::library::engine_changes::engines_change;
+use crate::library::engine_changes::SingleEngines;
 use crate::output::note::{LeftOutReason, Note};
 use crate::residuals::chords::chord_errors;
 use crate::residuals::gauges::{calibrate, gauge_row};
@@ -39,6 +39,8 @@ pub(crate) struct PreparedFlights<'a> {
     pub(crate) segments: Vec<SegmentRow>,
     /// Whether what an engine burns beside the others is another before and after some date.
     pub(crate) engines_change: bool,
+    /// Whether they are of other aircraft than the one that taught the model.
+    pub(crate) of_other_aircraft: bool,
     /// Segments that were left out, by reason.
     pub(crate) left_out: BTreeMap<LeftOutReason, usize>,
 }
@@ -135,7 +137,7 @@ impl<'a> PreparedFlights<'a> {
         model: &EffectModel<'_>,
         flights: &[FlightRecord<'_>],
         reference: Reference<'a>,
-        library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
+        library_of: impl FnOnce(&[EffectPoint], SingleEngines, &[f64]) -> Library,
     ) -> (Self, Library) {
         let mut left_out = BTreeMap::new();
         let mut inside = inside(model, flights, &mut left_out);
@@ -147,9 +149,10 @@ impl<'a> PreparedFlights<'a> {
             inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
-        let library = library_of(&points, channels.contrasts > 0, &starts);
+        let engines = SingleEngines::of(flights, channels.contrasts > 0);
+        let library = library_of(&points, engines, &starts);
         let mut data = Self::of_inside(model, (inside, left_out), reference, predictor, &library);
-        data.engines_change = channels.contrasts > 0 && engines_change(flights);
+        data.engines_change = engines == SingleEngines::Change;
         (data, library)
     }
 
@@ -189,6 +192,7 @@ impl<'a> PreparedFlights<'a> {
             flights: Vec::with_capacity(inside.len()),
             segments: Vec::new(),
             engines_change: false,
+            of_other_aircraft: false,
             left_out,
         };
         for (segments, gauges) in inside {

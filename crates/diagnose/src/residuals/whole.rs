@@ -13,11 +13,15 @@ use crate::residuals::level::WholeModelOfLevels;
 use crate::residuals::predictor::Predictor;
 use crate::residuals::reference::Reference;
 use crate::residuals::signatures::Difference;
+use crate::residuals::whole::places::Places;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::n2_deck::Deck;
 use crate::signals::noise::{NoiseModel, Statistics};
 use crate::signals::references::DiagnoseError;
 use crate::signals::wander::add_wander;
+
+mod mean;
+mod places;
 
 /// Samples of the segment that an interval at a flight point is of.
 const SAMPLES_OF_A_SEGMENT: usize = 10;
@@ -46,6 +50,8 @@ pub struct WholePrediction {
     pub loadings: Vec<f64>,
     /// Variance of the model there that is not in the loadings: where nothing was flown.
     pub unflown: f64,
+    /// What of it is another from place to place.
+    pub(crate) places: Places,
     /// Variance of what all segments of a flight have in common.
     pub of_flight: f64,
     /// Variance of what a segment has of its own.
@@ -72,34 +78,6 @@ impl WholePrediction {
     #[must_use]
     pub fn of_model(&self) -> f64 {
         self.unflown + self.loadings.iter().map(|loading| loading * loading).sum::<f64>()
-    }
-
-    /// Variance of the mean error over these segments of one new flight.
-    #[must_use]
-    #[expect(clippy::needless_pass_by_value, reason = "iterators are passed by value")]
-    pub fn variance_of_flight<'p>(segments: impl Iterator<Item = &'p Self> + Clone) -> f64 {
-        let count = segments.clone().count().max(1) as f64;
-        let mean = |of: fn(&Self) -> f64| segments.clone().map(of).sum::<f64>() / count;
-        Self::variance_of_mean(segments.clone())
-            + mean(|one| one.of_flight)
-            + mean(|one| one.of_segment) / count
-    }
-
-    /// Variance of the model's mean error over these segments, however many flights there are: that of a fleet's mean.
-    #[must_use]
-    pub fn variance_of_mean<'p>(segments: impl Iterator<Item = &'p Self> + Clone) -> f64 {
-        let count = segments.clone().count().max(1) as f64;
-        let mut sums = Vec::new();
-        let mut unflown = 0.0;
-        for one in segments {
-            sums.resize(one.loadings.len(), 0.0);
-            for (sum, loading) in sums.iter_mut().zip(&one.loadings) {
-                *sum += loading / count;
-            }
-            // Unflown regions of one model err together.
-            unflown += one.unflown.sqrt() / count;
-        }
-        unflown * unflown + sums.iter().map(|sum| sum * sum).sum::<f64>()
     }
 
     /// Variance of ln fuel flow that a new segment of a new flight would show.
@@ -264,6 +242,7 @@ impl<'a> WholeModel<'a> {
             ln_fuel_flow: found.ln_fuel_flow,
             loadings: found.loadings,
             unflown: found.unflown,
+            places: found.places,
             of_flight: stated * stated * noise.common.iter().map(square).sum::<f64>()
                 + found.carried_unknown,
             of_segment: stated * stated * square(&noise.factor[0]),
@@ -283,7 +262,8 @@ impl<'a> WholeModel<'a> {
         let layout = baseline.layout();
         let mut mean = self.predictor.predict(&response)[0];
         let mut raw = vec![0.0; layout.len()];
-        let mut unflown = baseline.write_remainder(&response, &mut raw[layout.remainder.clone()]);
+        let left = baseline.write_remainder(&response, &mut raw[layout.remainder.clone()]);
+        let mut unflown = left.between_knots + left.beyond;
         let drag = &mut raw[layout.drag.clone()];
         match tables {
             Tables::OfPredictions => baseline.write_drag(&response, drag),
@@ -298,6 +278,7 @@ impl<'a> WholeModel<'a> {
         }
         let thrust_square = response.drag_over_thrust * response.drag_over_thrust;
         unflown += baseline.table.as_ref().map_or(0.0, |t| thrust_square * t.left_out(&response));
+        let places = Places::new(baseline, &response, left);
         let carried = self.carried(model, point, &known);
         raw[layout.standing_effects].copy_from_slice(&carried.slopes);
         let factor = baseline.factor();
@@ -313,6 +294,7 @@ impl<'a> WholeModel<'a> {
             ln_fuel_flow: mean + carried.mean,
             loadings,
             unflown: stated * stated * unflown,
+            places,
             carried_unknown: carried.unknown,
             known,
             response,
@@ -334,6 +316,7 @@ struct Believed {
     ln_fuel_flow: f64,
     loadings: Vec<f64>,
     unflown: f64,
+    places: Places,
     carried_unknown: f64,
     known: KnownPoint,
     response: Response,

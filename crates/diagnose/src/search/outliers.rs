@@ -24,10 +24,10 @@ use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::common_loadings;
 use crate::search::system::{RowsWithinSegments, fit_in_memory};
-use crate::signals::channels::MAXIMUM_CHANNELS;
+use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::thresholds::{
     ALIKE_NEIGHBORS, FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, LEAST_ROBUST_SCALE,
-    OUTLIER_DISTANCE, OUTLIER_NEIGHBORS,
+    NEIGHBORS_AS_THIS, OUTLIER_DISTANCE, OUTLIER_NEIGHBORS,
 };
 
 /// Turns at most; two or three settle who is an outlier.
@@ -52,6 +52,10 @@ struct Side {
 /// A gap that depends on something is shown by neighbors too: a segment is no outlier if half of the nearest segments of other
 /// flights, in any variable, are as far to the same side. Among those variables is the date: two flights one after the other that
 /// are off alike are none, one alone is.
+///
+/// A flight that is partly in such a gap has half of it in common, so that its segments are far on either side of it, and its
+/// neighbors within flights that are wholly in the gap, or out of it, are not far. So neighbors are also asked whether what they
+/// leave, with what their flights have in common, is rather what the segment leaves than what its flight has in common.
 pub(crate) fn outliers(
     data: &PreparedFlights<'_>,
     design: &Design<'_>,
@@ -59,17 +63,44 @@ pub(crate) fn outliers(
     rows: &RowsWithinSegments,
 ) -> Vec<bool> {
     let judge = Judge::new(data, design, library, rows);
-    let mut far = far_from_median(data);
+    let mut judged = Judged { far: far_from_median(data), left: vec![] };
     for _ in 0..TURNS {
-        let Some(sizes) = judge.fit(&far) else { break };
-        let next = judge.far(&sizes, &far);
-        let settled = next.iter().zip(&far).all(|(a, b)| a.is_some() == b.is_some());
-        far = next;
+        let Some(sizes) = judge.fit(&judged.far) else { break };
+        let Some(next) = judge.far(&sizes, &judged.far) else {
+            return vec![false; data.segments.len()];
+        };
+        let settled = next.far.iter().zip(&judged.far).all(|(a, b)| a.is_some() == b.is_some());
+        judged = next;
         if settled {
             break;
         }
     }
-    Neighbors::new(data, design).alone(&far)
+    Neighbors::new(data, design).alone(&judged)
+}
+
+/// What the fit says of every segment.
+struct Judged {
+    /// Which are far from all others.
+    far: Vec<Option<Side>>,
+    /// What the fit leaves of each; none before there is a fit.
+    left: Vec<Left>,
+}
+
+/// What the fit leaves of a segment, by channel.
+#[derive(Clone, Copy, Debug)]
+struct Left {
+    /// All of it.
+    all: ByChannel,
+    /// What would be left if the segment were as the others: what its flight has in common, or nothing where that is far itself.
+    expected: ByChannel,
+}
+
+impl Left {
+    /// Whether this is nearer to what another leaves than to what that one would if it were as its flight.
+    fn is_as(&self, other: &Self, channel: usize) -> bool {
+        let from = |value: f64| (self.all[channel] - value).abs();
+        from(other.all[channel]) < from(other.expected[channel])
+    }
 }
 
 /// Before anything is fitted: what is far from the median of all segments.
@@ -195,55 +226,58 @@ impl<'a> Judge<'a> {
     }
 
     /// What is far from the fit, of all segments; those that were `before` say nothing about what their flight has in common.
-    fn far(&self, sizes: &[f64], before: &[Option<Side>]) -> Vec<Option<Side>> {
-        let channels = self.data.channels.count();
-        let mut left = Vec::with_capacity(self.data.segments.len() * channels);
+    /// `None` where the numbers are degenerate.
+    fn far(&self, sizes: &[f64], before: &[Option<Side>]) -> Option<Judged> {
+        let mut left = Vec::with_capacity(self.data.segments.len());
         let mut of_flights = Vec::with_capacity(self.data.flights.len());
         // A flight of which every segment was far is judged by all of them.
         for (index, flight) in self.data.flights.iter().enumerate() {
             let some = flight.segments.clone().any(|segment| before[segment].is_none());
             let ordinary = self.places(flight, |segment| !some || before[segment].is_none());
-            let Some((own, common)) = self.left_of(index, sizes, &ordinary) else {
-                return vec![None; self.data.segments.len()];
-            };
-            left.extend(own);
+            let (of_segments, common) = self.left_of(index, sizes, &ordinary)?;
+            left.extend(of_segments);
             of_flights.push(common);
         }
         let mut far = self.far_segments(&left);
         let distances = of_flights.iter().map(|(distance, _)| *distance).collect();
         let limit = OUTLIER_DISTANCE * median(distances).max(1.0);
         for (flight, (distance, side)) in self.data.flights.iter().zip(of_flights) {
-            for far in far[flight.segments.clone()].iter_mut().filter(|_| distance > limit) {
-                *far = Some(side);
+            for segment in flight.segments.clone().filter(|_| distance > limit) {
+                far[segment] = Some(side);
+                left[segment].expected = [0.0; MAXIMUM_CHANNELS];
             }
         }
-        far
+        Some(Judged { far, left })
     }
 
-    /// What a flight's segments leave of their own; how far the flight is off, and to which side.
+    /// What a flight's segments leave; how far the flight is off, and to which side.
     fn left_of(
         &self,
         flight: usize,
         sizes: &[f64],
         ordinary: &[usize],
-    ) -> Option<(Vec<f64>, (f64, Side))> {
+    ) -> Option<(Vec<Left>, (f64, Side))> {
         let of_flight = self.of_flight(flight);
-        let mut left = of_flight.rows.col_as_slice(sizes.len()).to_vec();
+        let mut rows = of_flight.rows.col_as_slice(sizes.len()).to_vec();
         for (column, size) in sizes.iter().enumerate() {
-            for (left, value) in left.iter_mut().zip(of_flight.rows.col_as_slice(column)) {
+            for (left, value) in rows.iter_mut().zip(of_flight.rows.col_as_slice(column)) {
                 *left -= size * value;
             }
         }
         let (common, inner) = inner(&of_flight.common, ordinary)?;
-        let of_ordinary = Mat::from_fn(ordinary.len(), 1, |k, _| left[ordinary[k]]);
+        let of_ordinary = Mat::from_fn(ordinary.len(), 1, |k, _| rows[ordinary[k]]);
         let mut shared = common.transpose() * of_ordinary;
         inner.solve(&mut shared);
         let explained = &of_flight.common * &shared;
         let channels = self.data.channels.count();
         let mut means = [0.0; MAXIMUM_CHANNELS];
-        for (row, left) in left.iter_mut().enumerate() {
-            *left -= explained[(row, 0)];
-            means[row % channels] += explained[(row, 0)];
+        let none = [0.0; MAXIMUM_CHANNELS];
+        let mut left = vec![Left { all: none, expected: none }; rows.len() / channels];
+        for (row, value) in rows.into_iter().enumerate() {
+            let (segment, channel) = (row / channels, row % channels);
+            left[segment].all[channel] = value;
+            left[segment].expected[channel] = explained[(row, 0)];
+            means[channel] += explained[(row, 0)];
         }
         let largest = (0..channels).max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()));
         let channel = largest.unwrap_or(0);
@@ -251,7 +285,7 @@ impl<'a> Judge<'a> {
         Some((left, (shared.norm_l2(), side)))
     }
 
-    fn far_segments(&self, left: &[f64]) -> Vec<Option<Side>> {
+    fn far_segments(&self, left: &[Left]) -> Vec<Option<Side>> {
         let channels = self.data.channels.count();
         let mut far = vec![None; self.data.segments.len()];
         let mut farthest = vec![OUTLIER_DISTANCE; far.len()];
@@ -259,7 +293,7 @@ impl<'a> Judge<'a> {
             let recorded = self.data.segments.iter().enumerate();
             let recorded: Vec<usize> =
                 recorded.filter(|(_, row)| row.is_recorded[channel]).map(|(k, _)| k).collect();
-            let of = |segment: usize| left[segment * channels + channel];
+            let of = |segment: usize| left[segment].all[channel] - left[segment].expected[channel];
             let distance = median(recorded.iter().map(|&k| of(k).abs()).collect());
             let scale = (MEDIAN_TO_DEVIATION * distance).max(LEAST_ROBUST_SCALE);
             for segment in recorded {
@@ -310,11 +344,11 @@ impl Neighbors {
     }
 
     /// Of what is far from all others, what has no neighbors that are off alike in any variable.
-    fn alone(&self, far: &[Option<Side>]) -> Vec<bool> {
-        let mut alone: Vec<bool> = far.iter().map(Option::is_some).collect();
+    fn alone(&self, judged: &Judged) -> Vec<bool> {
+        let mut alone: Vec<bool> = judged.far.iter().map(Option::is_some).collect();
         for order in &self.orders {
             for (place, &segment) in order.iter().enumerate() {
-                if alone[segment] && self.has_company(order, place, far) {
+                if alone[segment] && self.has_company(order, place, judged) {
                     alone[segment] = false;
                 }
             }
@@ -322,23 +356,31 @@ impl Neighbors {
         alone
     }
 
-    fn has_company(&self, order: &[usize], place: usize, far: &[Option<Side>]) -> bool {
+    fn has_company(&self, order: &[usize], place: usize, judged: &Judged) -> bool {
         let segment = order[place];
+        let Judged { far, left } = judged;
+        let Some(side) = far[segment] else { return true };
+        let is_as = |one: usize| match (left.get(one), left.get(segment)) {
+            (Some(near), Some(own)) => near.is_as(own, side.channel),
+            _ => false,
+        };
         let other = |near: &&usize| self.flights[**near] != self.flights[segment];
         let (mut below, mut above) =
             (order[..place].iter().rev().filter(other), order[place + 1..].iter().filter(other));
-        let (mut near, mut alike) = (0, 0);
+        let (mut near, mut alike, mut as_this) = (0, 0, 0);
         while near < OUTLIER_NEIGHBORS {
             let pair = [below.next(), above.next()];
             for &one in pair.iter().flatten() {
                 near += 1;
-                alike += usize::from(far[*one] == far[segment]);
+                alike += usize::from(far[*one] == Some(side));
+                as_this += usize::from(is_as(*one));
             }
             if pair == [None, None] {
                 break;
             }
         }
-        alike > 0 && alike as f64 >= ALIKE_NEIGHBORS * near as f64
+        let at_least = |count: usize, share: f64| count > 0 && count as f64 >= share * near as f64;
+        at_least(alike, ALIKE_NEIGHBORS) || at_least(as_this, NEIGHBORS_AS_THIS)
     }
 }
 

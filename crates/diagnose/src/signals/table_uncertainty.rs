@@ -1,5 +1,7 @@
 //! What a drag table does not know.
 
+pub(crate) mod left_out;
+
 use std::sync::Arc;
 
 use effects::{EffectModel, EffectPoint, ExtendedModel, Response};
@@ -214,15 +216,6 @@ impl TableUncertainty {
     #[must_use]
     pub fn pivots(&self) -> &[usize] {
         &self.pivots
-    }
-
-    /// Variance of the relative error at a point that the factor leaves out: the nodes that nobody visits.
-    pub(crate) fn left_out(&self, response: &Response) -> f64 {
-        let (lift, mach) = (response.lift_coefficient, response.mach);
-        let Ok(cell) = self.grid.locate(lift, mach, Outside::Hold) else { return 0.0 };
-        let corners = cell.nodes().into_iter().zip(cell.weights());
-        let deviation = |node: usize| self.left.get(node).copied().unwrap_or(0.0).sqrt();
-        corners.map(|(node, weight)| weight * deviation(node)).sum::<f64>().powi(2)
     }
 
     /// Covariance of two nodes' relative errors.

@@ -23,9 +23,7 @@ fn with_flights<T>(
         &records,
         Reference::Table,
         |points, engines, starts| {
-            Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None, 0), |_| {
-                true
-            })
+            Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| true)
         },
     );
     let design = Design::new(&data, &references, None, None);
