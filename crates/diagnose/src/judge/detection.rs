@@ -87,6 +87,8 @@ pub(crate) fn detect(
     // A scatter closes nothing, but what is named with it must not make unseen flights worse.
     let is_refuted = leaves_most || no_scatter || surely_makes_worse(unseen);
     let is_doubted = refuted_table || may_close_nothing(unseen.filter(|_| !is_scatter));
+    let leads = top
+        .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
     if table.is_none() {
         let keeps = kept_by_name(library, input, is_refuted, is_doubted);
         outside.probability = 1.0 - keeps * (1.0 - outside.probability);
@@ -117,10 +119,11 @@ pub(crate) fn detect(
         is_seen && (is_told || !is_vague(gap, outside, top, taught && makes_worse(unseen)));
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
-    // functions, and may be all of a large gap: the form that describes it is asked then. What is surely no noise is told anyhow.
+    // functions, and may be all of a large gap: the form that describes it is asked then. What is surely no noise, and has a name that
+    // other channels than fuel flow bear out, is told anyhow.
     let has_no_witness = stands_out
         && taught
-        && !is_sure
+        && !(is_sure && leads)
         && !(lies_at_an_engine || has_a_place)
         && is_outside
         && *nothing_predicted;
