@@ -435,6 +435,13 @@ pub(crate) struct LeftOfSmooth {
     pub(crate) beyond: f64,
 }
 
+impl LeftOfSmooth {
+    /// All of it.
+    pub(crate) const fn total(self) -> f64 {
+        self.between_knots + self.beyond
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
 const fn is_none(count: &usize) -> bool {
     *count == 0

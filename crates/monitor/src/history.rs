@@ -119,7 +119,7 @@ impl History {
         let recorded: Vec<usize> =
             at_flight.iter().copied().filter(|flight| (1..series.len()).contains(flight)).collect();
         let mut boundaries = Vec::new();
-        let (mut changes, mut levels);
+        let (mut changes, mut levels, mut stepped);
         let mut round = 0;
         loop {
             round += 1;
@@ -127,17 +127,17 @@ impl History {
             let shown = Levels::fit(series, &weights, &all, beliefs)?.at_mean_conditions(series);
             changes = found(&shown, &weights, &candidates, beliefs);
             let asked = Asked::new(&shown, &weights, &[], *beliefs);
-            let stepped = stepped_events(&asked, &changes, &candidates)?;
+            stepped = stepped_events(&asked, &changes, &candidates)?;
             levels = levels_between(&mut changes, &stepped.kept, series, &weights, beliefs)?;
             let next: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
-            let of_series = Asked::new(series, &weights, &[], *beliefs);
-            levels = levels.with_trend(stepped.trend(&of_series, &next)?);
             let is_settled = next == boundaries;
             boundaries = next;
             if is_settled || series.conditions().is_empty() || round == MOST_ROUNDS {
                 break;
             }
         }
+        let of_series = Asked::new(series, &weights, &[], *beliefs);
+        levels = levels.with_trend(stepped.trend(&of_series, &boundaries)?);
         let measured = Levels::fit(series, &weights, &merged(&boundaries, &recorded), beliefs)?;
         let events = (0..events.len())
             .map(|event| effect(event, &at_flight, (&levels, &measured)))
@@ -226,23 +226,25 @@ fn stepped_events(
         let levels = Levels::fit(series, weights, &merged(&found, kept), beliefs)?;
         Some(levels.ln_evidence(middle_percent, beliefs))
     };
-    let mut weighed = vec![(kept.clone(), ln_evidence(&kept)? + kept.len() as f64 * ln_believed)];
+    let ln_posterior = |kept: &[usize]| Some(ln_evidence(kept)? + kept.len() as f64 * ln_believed);
+    let mut with_all = ln_posterior(&kept)?;
+    let mut weighed = vec![(kept.clone(), with_all)];
     loop {
-        let (_, with_all) = *weighed.iter().find(|(set, _)| *set == kept)?;
-        let mut least: Option<(usize, f64)> = None;
+        let mut best: Option<(usize, f64)> = None;
         for place in 0..kept.len() {
             let mut others = kept.clone();
             others.remove(place);
-            let ln = ln_evidence(&others)? + others.len() as f64 * ln_believed;
-            if least.is_none_or(|(_, least)| with_all - ln < least) {
-                least = Some((place, with_all - ln));
+            let ln = ln_posterior(&others)?;
+            if best.is_none_or(|(_, most)| ln > most) {
+                best = Some((place, ln));
             }
             weighed.push((others, ln));
         }
-        match least {
-            Some((place, ln_odds)) if ln_odds < 0.0 => kept.remove(place),
-            _ => return Some(SteppedEvents { kept, weighed }),
+        let Some((place, ln)) = best.filter(|(_, ln)| *ln > with_all) else {
+            return Some(SteppedEvents { kept, weighed });
         };
+        kept.remove(place);
+        with_all = ln;
     }
 }
 

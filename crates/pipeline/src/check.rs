@@ -97,14 +97,11 @@ impl FlightCheck {
                 likely_cause: "the form of time or of a number, or its unit".to_owned(),
                 remedy: "look at the first of them, which the warning above names".to_owned(),
             };
-            self.findings.push(draft.for_flight(&self.identity));
-            self.findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
+            self.add(draft);
         }
         self
     }
-}
 
-impl FlightCheck {
     /// The same with what is to be said of minutes that are dropped because they hold too few samples.
     #[must_use]
     pub fn with_incomplete_minutes(mut self, tally: &Tally) -> Self {
@@ -123,10 +120,15 @@ impl FlightCheck {
                 likely_cause: "drop-outs, or a recorder that changes to less than one sample in 30 s on the way".to_owned(),
                 remedy: "export the recording with all its rows, or each rate as a flight of its own".to_owned(),
             };
-            self.findings.push(draft.for_flight(&self.identity));
-            self.findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
+            self.add(draft);
         }
         self
+    }
+
+    /// Adds a finding in its place: the gravest first.
+    fn add(&mut self, draft: Draft) {
+        self.findings.push(draft.for_flight(&self.identity));
+        self.findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
     }
 }
 

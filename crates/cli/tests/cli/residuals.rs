@@ -102,6 +102,16 @@ fn fuel_factors_are_against_the_book() {
     assert!(numbers(&factors, "specific_range_deviation_percent")[0] < 0.0);
 }
 
+fn assert_coverage_is_the_share_inside(
+    summary: &serde_json::Value,
+    errors: &[f64],
+    halves: &[f64],
+) {
+    let inside = errors.iter().zip(halves).filter(|(error, half)| error.abs() <= **half).count();
+    let stated = summary["tails"][0]["interval95_coverage"].as_f64().unwrap();
+    assert!((inside as f64 / errors.len() as f64 - stated).abs() < 1e-9, "{inside} {stated}");
+}
+
 /// How far the whole model expects to err: the share of errors within it is the coverage that the summary states; a flight's mean
 /// is expected nearer than a lone segment of it, and not nearer than its segments' common part allows.
 #[test]
@@ -123,12 +133,10 @@ fn residuals_state_how_far_the_whole_model_expects_to_err() {
     let (errors, halves) =
         (numbers(&columns, "error_percent"), numbers(&columns, "error_half_width95_percent"));
     let flights = numbers(&columns, "flight_mean_half_width95_percent");
-    let inside = errors.iter().zip(&halves).filter(|(error, half)| error.abs() <= **half).count();
     let summary: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
     crate::json_schema::assert_held("summary-1.json", &summary);
-    let stated = summary["tails"][0]["interval95_coverage"].as_f64().unwrap();
-    assert!((inside as f64 / errors.len() as f64 - stated).abs() < 1e-9, "{inside} {stated}");
+    assert_coverage_is_the_share_inside(&summary, &errors, &halves);
     for (flight, of_flight) in columns["flight"].iter().zip(&flights) {
         let of_segments = columns["flight"].iter().zip(&halves).filter(|(name, _)| *name == flight);
         let widest = of_segments.map(|(_, half)| *half).fold(0.0, f64::max);
@@ -157,11 +165,9 @@ fn a_table_of_few_flights_states_how_far_it_expects_to_err() {
     let columns = csv_columns(&table);
     let (errors, halves) =
         (numbers(&columns, "error_percent"), numbers(&columns, "error_half_width95_percent"));
-    let inside = errors.iter().zip(&halves).filter(|(error, half)| error.abs() <= **half).count();
     let summary: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
-    let stated = summary["tails"][0]["interval95_coverage"].as_f64().unwrap();
-    assert!((inside as f64 / errors.len() as f64 - stated).abs() < 1e-9, "{inside} {stated}");
+    assert_coverage_is_the_share_inside(&summary, &errors, &halves);
     for unknown in ["beyond_flights", "flight_mean_half_width95_percent"] {
         assert!(columns[unknown].iter().all(String::is_empty), "{unknown}");
     }

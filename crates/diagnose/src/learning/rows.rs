@@ -57,8 +57,7 @@ impl ChannelRows {
             fuel_flow_columns(baseline).map(|column| baseline.prior_deviation(column)).collect();
         let mut unheld = Vec::with_capacity(data.segments.len());
         let rows = Self::of_channel(data, 0, terms + standing + drag, |row, into| {
-            let left = baseline.write_remainder(&row.response, &mut into[..terms]);
-            let smooth = left.between_knots + left.beyond;
+            let smooth = baseline.write_remainder(&row.response, &mut into[..terms]).total();
             let square = row.drag_over_thrust * row.drag_over_thrust;
             let of_drag =
                 baseline.table.as_ref().map_or(0.0, |table| table.left_out(&row.response));

@@ -20,10 +20,10 @@ pub(crate) enum SingleEngines {
 impl SingleEngines {
     /// What these flights show, of which `recorded` tells whether each engine has its own flow.
     pub(crate) fn of(flights: &[FlightRecord<'_>], recorded: bool) -> Self {
-        match (recorded, engines_change(flights)) {
-            (false, _) => Self::NotRecorded,
-            (true, false) => Self::Alike,
-            (true, true) => Self::Change,
+        match recorded {
+            false => Self::NotRecorded,
+            true if engines_change(flights) => Self::Change,
+            true => Self::Alike,
         }
     }
 }

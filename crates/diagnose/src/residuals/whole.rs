@@ -7,8 +7,8 @@ use effects::{
 use flight::Segment;
 use perf_model::FlightPoint;
 
-use crate::baseline::Baseline;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
+use crate::baseline::{Baseline, LeftOfSmooth};
 use crate::residuals::level::WholeModelOfLevels;
 use crate::residuals::predictor::Predictor;
 use crate::residuals::reference::Reference;
@@ -242,7 +242,7 @@ impl<'a> WholeModel<'a> {
             ln_fuel_flow: found.ln_fuel_flow,
             loadings: found.loadings,
             unflown: found.unflown,
-            places: found.places,
+            places: Places::new(baseline, &found.response, found.left),
             of_flight: stated * stated * noise.common.iter().map(square).sum::<f64>()
                 + found.carried_unknown,
             of_segment: stated * stated * square(&noise.factor[0]),
@@ -263,7 +263,7 @@ impl<'a> WholeModel<'a> {
         let mut mean = self.predictor.predict(&response)[0];
         let mut raw = vec![0.0; layout.len()];
         let left = baseline.write_remainder(&response, &mut raw[layout.remainder.clone()]);
-        let mut unflown = left.between_knots + left.beyond;
+        let mut unflown = left.total();
         let drag = &mut raw[layout.drag.clone()];
         match tables {
             Tables::OfPredictions => baseline.write_drag(&response, drag),
@@ -278,7 +278,6 @@ impl<'a> WholeModel<'a> {
         }
         let thrust_square = response.drag_over_thrust * response.drag_over_thrust;
         unflown += baseline.table.as_ref().map_or(0.0, |t| thrust_square * t.left_out(&response));
-        let places = Places::new(baseline, &response, left);
         let carried = self.carried(model, point, &known);
         raw[layout.standing_effects].copy_from_slice(&carried.slopes);
         let factor = baseline.factor();
@@ -294,7 +293,7 @@ impl<'a> WholeModel<'a> {
             ln_fuel_flow: mean + carried.mean,
             loadings,
             unflown: stated * stated * unflown,
-            places,
+            left,
             carried_unknown: carried.unknown,
             known,
             response,
@@ -316,7 +315,7 @@ struct Believed {
     ln_fuel_flow: f64,
     loadings: Vec<f64>,
     unflown: f64,
-    places: Places,
+    left: LeftOfSmooth,
     carried_unknown: f64,
     known: KnownPoint,
     response: Response,
