@@ -163,7 +163,14 @@ impl Update {
 #[must_use]
 #[inline]
 pub fn error_percent(drag_coefficient: &Table, cell: &Cell, observation: &Observation) -> f64 {
-    let excess = observation.drag_coefficient - drag_coefficient.interpolate(cell);
+    error_percent_of(drag_coefficient.interpolate(cell), observation)
+}
+
+/// The same of a drag coefficient that was read from a table otherwise.
+#[must_use]
+#[inline]
+pub fn error_percent_of(drag_coefficient: f64, observation: &Observation) -> f64 {
+    let excess = observation.drag_coefficient - drag_coefficient;
     100.0 * observation.fuel_flow_per_drag_coefficient_kg_s * excess
         / observation.fuel_flow_total_kg_s
 }

@@ -31,6 +31,8 @@ pub struct Baseline {
     /// What was believed of the drag table before the flights; `None` where the table was taken as exact.
     pub(crate) table: Option<TableUncertainty>,
     pub(crate) factor: Mat<f64>,
+    /// Whether it holds of another aircraft than that which flew.
+    pub(crate) of_another: bool,
 }
 
 /// A baseline as it is written, to the same bits. With the prior of the drag table ([`Baseline::new`]) it is a baseline.
@@ -119,7 +121,7 @@ impl Baseline {
         parts: BaselineRecord,
         table: Option<TableUncertainty>,
     ) -> Result<Self, BaselineLengthError> {
-        let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0) };
+        let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0), of_another: false };
         baseline.scale_smooth();
         let check = |quantity, found, expected| {
             if found == expected {
@@ -200,11 +202,12 @@ impl Baseline {
         self.parts.rms
     }
 
-    /// What of it holds of another aircraft of the type: all but how its tank gauges read, which are another aircraft's own.
+    /// What of it holds of another aircraft of the type: all but how its tank gauges read, and how fast its engines turn at a thrust,
+    /// which are another aircraft's own.
     #[must_use]
     pub fn of_another_aircraft(&self) -> Self {
         let parts = BaselineRecord { gauges: None, ..self.parts.clone() };
-        Self { parts, ..self.clone() }
+        Self { parts, of_another: true, ..self.clone() }
     }
 
     /// How tank gauges read against the flow meters in the flights that it was learnt from, where they are recorded.

@@ -143,8 +143,7 @@ impl Run<'_> {
         if let Some(done) = too_few(&data) {
             return Ok(done);
         }
-        notes.extend(data.thrust_by_n2_note(library));
-        notes.extend(data.anti_ice_note(library));
+        notes.extend(data.notes(library, input.baseline));
         let design = |data: &_| Design::new(data, references, input.baseline, input.table);
         let of_all = design(&data);
         let rows = RowsWithinSegments::new(&data, &of_all);

@@ -7,6 +7,7 @@ mod deck;
 mod dials;
 mod evidence;
 mod fit;
+mod guide;
 mod learn;
 mod n2_rows;
 mod outliers;

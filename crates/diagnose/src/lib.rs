@@ -161,5 +161,5 @@ pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};
 pub use signals::table_uncertainty::{
-    TableOrigin, TableUncertainty, TableUncertaintyError, visited_nodes,
+    GuideStates, TableOrigin, TableUncertainty, TableUncertaintyError, visited_nodes,
 };

@@ -2,14 +2,16 @@
 
 use effects::{EffectModel, EffectPoint};
 use flight::effect::{
-    EffectGroup, EffectId, EffectSign, HiddenParameter, NeededInput, ThrottleArgument,
+    DragRise, DragRiseLaw, EffectGroup, EffectId, EffectSign, HiddenParameter, NeededInput,
+    ThrottleArgument,
 };
 
 use crate::library::dates::DateGrid;
 use crate::library::engine_changes::SingleEngines;
 use crate::priors::{
     AGNOSTIC_SPIKES, BACKGROUND_SPIKES, BOOK_AGNOSTIC_SPIKES, BOOK_OTHER_EFFECTS, BOOK_SPIKES,
-    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE, THROTTLE_PIVOTS,
+    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE,
+    STEEP_DIVERGENCE_FROM_FASTEST_MACH, STEEP_DIVERGENCE_MACHS, THROTTLE_PIVOTS,
 };
 use crate::thresholds::RECORDED_SHARE;
 
@@ -134,7 +136,8 @@ impl Library {
         let effect = self.effects.len();
         // What holds where nothing is said, where the grid has it.
         let middle = grid.iter().position(|hidden| *hidden == id.entry().hidden);
-        let middle = middle.unwrap_or(grid.len() / 2);
+        let by_usual_law = grid.iter().filter(|hidden| !is_steep_rise(**hidden)).count();
+        let middle = middle.unwrap_or(by_usual_law / 2);
         self.effects.push(Testable {
             id,
             typical,
@@ -216,12 +219,27 @@ fn hidden_grid(
                 .map(|(pivot, argument)| HiddenParameter::Throttle { pivot, argument })
                 .collect()
         }
-        HiddenParameter::DragDivergenceMach(_) => match model.aircraft().drag_divergence_mach() {
-            Some(mach) => vec![HiddenParameter::DragDivergenceMach(mach.value())],
-            None => DIVERGENCE_MACHS.map(HiddenParameter::DragDivergenceMach).to_vec(),
-        },
+        HiddenParameter::DragRise(_) => {
+            let stated = model.aircraft().drag_divergence_mach();
+            let by_lock = stated.map_or(DIVERGENCE_MACHS.to_vec(), |mach| vec![mach.value()]);
+            let by_lock = by_lock.into_iter().map(DragRise::by_lock);
+            by_lock.chain(steep_rises(points)).map(HiddenParameter::DragRise).collect()
+        }
         HiddenParameter::Step { .. } | HiddenParameter::History(_) => dates.hidden(id).to_vec(),
     }
+}
+
+/// Steep rises that the fastest of these points may be in.
+fn steep_rises(points: &[EffectPoint]) -> impl Iterator<Item = DragRise> {
+    let fastest = points.iter().map(|point| point.mach).fold(0.0, f64::max);
+    STEEP_DIVERGENCE_MACHS
+        .into_iter()
+        .filter(move |mach| (fastest - mach).abs() <= STEEP_DIVERGENCE_FROM_FASTEST_MACH)
+        .map(|divergence_mach| DragRise { divergence_mach, law: DragRiseLaw::Steep })
+}
+
+const fn is_steep_rise(hidden: HiddenParameter) -> bool {
+    matches!(hidden, HiddenParameter::DragRise(DragRise { law: DragRiseLaw::Steep, .. }))
 }
 
 /// Whether thrust can be read from N2 in enough segments.

@@ -53,6 +53,12 @@ deciding_numbers! {
         DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94], "Mach",
             "drag-divergence Mach numbers that are tried where the aircraft file states none",
             OurChoice "The range of transport and business aircraft.";
+        STEEP_DIVERGENCE_MACHS: [f64; 11] = [0.74, 0.76, 0.78, 0.80, 0.82, 0.84, 0.86, 0.88, 0.90, 0.92, 0.94], "Mach",
+            "drag-divergence Mach numbers of a steep rise that are tried",
+            OurChoice "The same range, half as far apart: a steep rise is a third as wide.";
+        STEEP_DIVERGENCE_FROM_FASTEST_MACH: f64 = 0.03, "Mach",
+            "how far from the fastest segment they may be",
+            OurChoice "What diverges farther above changes nothing that was flown, and nobody cruises farther beyond divergence.";
         STEP_DATES: usize = 15, "",
             "dates of a step that are tried, each with equally many flights between",
             OurChoice "A date is then off by at most a thirty-second of the flights, before the dates about a leading one are tried.";
@@ -190,6 +196,15 @@ deciding_numbers! {
             "Mach, CL, m, of the reference thrust, K, of the mean mass",
             "lengths over which the remainder bends: Mach number, lift coefficient, pressure altitude, thrust, ISA deviation, mass",
             OurChoice "About the standard deviation of each over a fleet's cruise; a drag rise bends over 0.02 of Mach number.";
+        GUIDE_SHAPE_DEVIATION: f64 = 0.06, "of fuel flow",
+            "how far an aircraft's departure from its guide is believed to be another elsewhere in the guide's range",
+            OurChoice "Guides are off by 3 to 8 %, their level included; rows of two guides of JSBSim differ by as much between levels, of which drag is no function.";
+        GUIDE_SHAPE_LIFT: f64 = 0.10, "",
+            "lift coefficient over which that departure bends",
+            OurChoice "As the remainder.";
+        GUIDE_SHAPE_MACH: f64 = 0.03, "Mach",
+            "Mach number over which that departure bends",
+            OurChoice "About as the remainder.";
         SMOOTH_KNOT_DISTANCE: f64 = 0.75, "lengths",
             "distance between the knots of a smooth function",
             Source "Arithmetic: a squared exponential kernel is then held to a hundredth between them.";

@@ -92,7 +92,7 @@ mod terms;
 mod variable;
 
 pub use applied::{AppliedEffects, AppliedLayer, AtReference, OUTSIDE};
-pub use drag::drag_rise;
+pub use drag::{drag_rise, steep_drag_rise};
 pub use engine::ANTI_ICE_PROXY_K;
 pub use error::{EffectError, EffectModelError, ObserveError, PredictError};
 pub use extended::ExtendedModel;

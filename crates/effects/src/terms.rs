@@ -1,7 +1,7 @@
 //! The effects that act at a point, in the units of the equations, layer by layer.
 
 use flight::MAXIMUM_ENGINES;
-use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
+use flight::effect::{DragRise, EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 
 use crate::form::AppliedForm;
 use crate::references::EffectReferences;
@@ -40,8 +40,8 @@ impl<'t> Layers<'t> {
 pub(crate) struct Terms {
     pub(crate) references: EffectReferences,
     sizes: [f64; EffectId::ALL.len()],
-    /// Drag-divergence Mach number at lift coefficient 0.35 that the rise is shifted from.
-    pub(crate) drag_divergence_mach: f64,
+    /// The rise of drag with Mach number that is shifted.
+    pub(crate) drag_rise: DragRise,
     pub(crate) tsfc_engine: [f64; MAXIMUM_ENGINES],
     /// Corrected thrust over its reference at which TSFC is unchanged.
     pub(crate) throttle_pivot: f64,
@@ -128,7 +128,7 @@ impl Terms {
         Self {
             references,
             sizes: [0.0; EffectId::ALL.len()],
-            drag_divergence_mach: 0.0,
+            drag_rise: DragRise::by_lock(0.0),
             tsfc_engine: [0.0; MAXIMUM_ENGINES],
             throttle_pivot: 0.0,
             throttle_argument: ThrottleArgument::CorrectedThrust,
@@ -179,7 +179,7 @@ impl Terms {
     fn set_hidden(&mut self, effect: &SizedEffect) {
         match effect.hidden {
             HiddenParameter::None => {}
-            HiddenParameter::DragDivergenceMach(mach) => self.drag_divergence_mach = mach,
+            HiddenParameter::DragRise(rise) => self.drag_rise = rise,
             HiddenParameter::Throttle { pivot, argument } => {
                 self.throttle_pivot = pivot;
                 self.throttle_argument = argument;

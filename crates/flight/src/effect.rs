@@ -19,7 +19,7 @@ mod surroundings;
 pub use entry::{
     DrivingVariable, EffectEntry, EffectGroup, EffectSign, NeededInput, Phrase, TypicalSize,
 };
-pub use hidden::{HiddenParameter, StepTarget, ThrottleArgument};
+pub use hidden::{DragRise, DragRiseLaw, HiddenParameter, StepTarget, ThrottleArgument};
 pub use history::{History, HistoryError, MAXIMUM_FALLS};
 
 /// Makes the enum, its list and the table of entries from one list, so that they cannot differ in length.

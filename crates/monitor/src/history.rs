@@ -101,6 +101,18 @@ impl History {
         events: &[(Timestamp, Bearing)],
         beliefs: &ChangeBeliefs,
     ) -> Option<Self> {
+        Self::fit_with_steps(series, events, &[], beliefs)
+    }
+
+    /// The same where a part of what the series sums up is known to have stepped at these instants: levels and trend step there too,
+    /// by whatever the flights say.
+    #[must_use]
+    pub fn fit_with_steps(
+        series: &Series,
+        events: &[(Timestamp, Bearing)],
+        steps: &[Timestamp],
+        beliefs: &ChangeBeliefs,
+    ) -> Option<Self> {
         let noise = Noise::estimate(series);
         let weights = noise.weights(series);
         let at_flight: Vec<usize> =
@@ -116,8 +128,11 @@ impl History {
                 is_likely: *bearing == Bearing::Likely,
             })
             .collect();
-        let recorded: Vec<usize> =
-            at_flight.iter().copied().filter(|flight| (1..series.len()).contains(flight)).collect();
+        let is_inside = |flight: &usize| (1..series.len()).contains(flight);
+        let known: Vec<usize> =
+            steps.iter().map(|time| series.first_from(*time)).filter(is_inside).collect();
+        let recorded: Vec<usize> = at_flight.iter().copied().filter(is_inside).collect();
+        let recorded = merged(&recorded, &known);
         let mut boundaries = Vec::new();
         let (mut changes, mut levels, mut stepped);
         let mut round = 0;
@@ -127,7 +142,7 @@ impl History {
             let shown = Levels::fit(series, &weights, &all, beliefs)?.at_mean_conditions(series);
             changes = found(&shown, &weights, &candidates, beliefs);
             let asked = Asked::new(&shown, &weights, &[], *beliefs);
-            stepped = stepped_events(&asked, &changes, &candidates)?;
+            stepped = stepped_events(&asked, &changes, (&candidates, &known))?;
             levels = levels_between(&mut changes, &stepped.kept, series, &weights, beliefs)?;
             let next: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
             let is_settled = next == boundaries;
@@ -210,7 +225,7 @@ fn merged(some: &[usize], others: &[usize]) -> Vec<usize> {
 fn stepped_events(
     asked: &Asked<'_>,
     changes: &[Change],
-    candidates: &[Candidate],
+    (candidates, known): (&[Candidate], &[usize]),
 ) -> Option<SteppedEvents> {
     let Asked { series, weights, ref beliefs, middle_percent, .. } = *asked;
     let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
@@ -218,17 +233,21 @@ fn stepped_events(
         let near = |change: &Change| (change.earliest..=change.latest).contains(flight);
         (1..series.len()).contains(flight) && !changes.iter().any(near)
     };
+    // What is known to be a step is one in every set.
+    let known: Vec<usize> = known.iter().copied().filter(is_free).collect();
+    let is_asked = |flight: &usize| is_free(flight) && !known.contains(flight);
     let mut kept =
-        merged(&[], &candidates.iter().map(|c| c.flight).filter(is_free).collect::<Vec<_>>());
+        merged(&[], &candidates.iter().map(|c| c.flight).filter(is_asked).collect::<Vec<_>>());
     let at_event = beliefs.change_at_event;
     let ln_believed = at_event.ln() - (-at_event).ln_1p();
     let ln_evidence = |kept: &[usize]| {
-        let levels = Levels::fit(series, weights, &merged(&found, kept), beliefs)?;
+        let boundaries = merged(&found, &merged(&known, kept));
+        let levels = Levels::fit(series, weights, &boundaries, beliefs)?;
         Some(levels.ln_evidence(middle_percent, beliefs))
     };
     let ln_posterior = |kept: &[usize]| Some(ln_evidence(kept)? + kept.len() as f64 * ln_believed);
     let mut with_all = ln_posterior(&kept)?;
-    let mut weighed = vec![(kept.clone(), with_all)];
+    let mut weighed = vec![(merged(&known, &kept), with_all)];
     loop {
         let mut best: Option<(usize, f64)> = None;
         for place in 0..kept.len() {
@@ -238,10 +257,10 @@ fn stepped_events(
             if best.is_none_or(|(_, most)| ln > most) {
                 best = Some((place, ln));
             }
-            weighed.push((others, ln));
+            weighed.push((merged(&known, &others), ln));
         }
         let Some((place, ln)) = best.filter(|(_, ln)| *ln > with_all) else {
-            return Some(SteppedEvents { kept, weighed });
+            return Some(SteppedEvents { kept: merged(&known, &kept), weighed });
         };
         kept.remove(place);
         with_all = ln;
@@ -250,7 +269,7 @@ fn stepped_events(
 
 /// Which recorded events are steps.
 struct SteppedEvents {
-    /// First flights after those that more probably are than not.
+    /// First flights after those that more probably are than not, and after what is known to be one.
     kept: Vec<usize>,
     /// Every set of them that was asked for, with ln of its probability but for a common term.
     weighed: Vec<(Vec<usize>, f64)>,

@@ -23,7 +23,9 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
         fuel_flow_error_percent: ErrorsSummary {
             before: ErrorStatistics::from_errors(errors_percent),
             after: None,
+            book: None,
         },
+        book_half_width95_percent: None,
         mean_error_half_width95_percent: None,
         interval95_coverage: None,
         mean_error_within_percent: None,

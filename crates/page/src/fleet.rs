@@ -27,7 +27,12 @@ impl FleetRow<'_> {
         self.summary.fuel_flow_error_percent.before.mean
     }
 
-    /// Half width of its 95 % interval, %.
+    /// What a planner multiplies the guide by, less 1, %.
+    fn fuel_factor_percent(&self) -> Option<f64> {
+        self.summary.fuel_flow_error_percent.against_book().mean.map(fuel_factor_percent)
+    }
+
+    /// Half width of the deviation's 95 % interval, %.
     fn half_width95(&self) -> Option<f64> {
         self.summary.mean_error_half_width95_percent
     }
@@ -103,8 +108,8 @@ fn tip(row: &FleetRow<'_>) -> String {
     if let Some(half) = row.half_width95() {
         let _ = write!(tip, " ± {half:.2} %");
     }
-    if let Some(mean) = row.deviation() {
-        let _ = write!(tip, "\nfuel factor {} %", signed(Some(fuel_factor_percent(mean))));
+    if let Some(factor) = row.fuel_factor_percent() {
+        let _ = write!(tip, "\nfuel factor {} %", signed(Some(factor)));
     }
     let _ = write!(tip, "\n{} flights, {} segments", row.summary.flights, row.summary.segments);
     tip
@@ -118,7 +123,7 @@ fn table(rows: &[FleetRow<'_>]) -> Markup {
     html! {
         // Not a caption: it would be as wide as the table, beyond the edge of a phone.
         p.note { "Deviations and errors are in % of total fuel flow; ± is half a 95 % interval of the mean; std with n − 1; max without \
-                  its sign. Fuel factor: what predicted fuel flow has to be raised by, %." }
+                  its sign. Deviation: of the model that each began with. Fuel factor: what fuel flow by the guide's rows has to be raised by, %." }
         div.scroll tabindex="0" role="region" aria-label="All tails" {
             table.fleet.sort.data data-name="fleet" {
                 thead { tr {
@@ -155,7 +160,7 @@ fn table_row(row: &FleetRow<'_>, adapted: bool, refits: bool, scale: (f64, f64))
             (number(before.mean, signed(before.mean)))
             (number(row.half_width95(), plain(row.half_width95())))
             td.drawn { (spark(row, scale)) }
-            @let factor = before.mean.map(fuel_factor_percent);
+            @let factor = row.fuel_factor_percent();
             (number(factor, signed(factor)))
             (number(before.std, plain(before.std)))
             (number(before.max_abs, plain(before.max_abs)))

@@ -90,6 +90,7 @@ fn in_words(tail: &TailDocument, document: &MonitorDocument) -> Markup {
             dt { "What" }
             dd {
                 b { (words::found(tail)) }
+                @if let Some(explained) = words::explained(tail) { " " (explained) }
                 @if let Some(shared) = words::shared(tail, &document.fleet) { " " (shared) }
                 @if let Some(compared) = words::compared(tail, document) { " " (compared) }
             }

@@ -12,6 +12,8 @@ use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
 
 /// Deviation beyond which units or the guide are more probable causes than the aircraft, %: `add_an_aircraft` in the book.
 const RARELY_THE_AIRCRAFT_PERCENT: f64 = 15.0;
+/// Difference of two mean errors that a reader who meets both should have explained, %. Our choice.
+const WORTH_A_WORD_PERCENT: f64 = 0.1;
 
 /// What is in a tail's section.
 pub(crate) fn body(
@@ -80,20 +82,33 @@ pub(crate) fn headline(result: &TailResult) -> String {
 /// What was found, in plain words.
 fn verdict(result: &TailResult, view: &TailView) -> Markup {
     let errors = &result.summary.fuel_flow_error_percent;
-    let Some(mean) = errors.before.mean else {
+    let book = errors.book.and_then(|book| book.mean);
+    let Some(mean) = book.or(errors.before.mean) else {
         return html! { p.verdict { "No segment lies inside the table: nothing can be said about this tail." } };
     };
-    let half = result.summary.mean_error_half_width95_percent;
+    let summary = &result.summary;
+    let half = match book {
+        Some(_) => summary.book_half_width95_percent,
+        None => summary.mean_error_half_width95_percent,
+    };
     let within = half.is_some_and(|half| mean.abs() <= half);
-    let model = if view.adapted { "the model that it began with" } else { "its model" };
+    let says = match book {
+        Some(_) => "its guide says",
+        None if view.adapted => "the model that it began with predicts",
+        None => "its model predicts",
+    };
+    let before = errors
+        .before
+        .mean
+        .filter(|before| book.is_some_and(|book| (book - before).abs() >= WORTH_A_WORD_PERCENT));
     html! {
         div.verdict.gap[!within] {
             p {
                 b {
-                    @if within { "It burns what " (model) " predicts, as far as these flights tell" }
+                    @if within { "It burns what " (says) ", as far as these flights tell" }
                     @else {
                         "It burns " (format!("{:.2}", fuel_factor_percent(mean).abs())) " % "
-                        @if mean > 0.0 { "more" } @else { "less" } " than " (model) " predicts"
+                        @if mean > 0.0 { "more" } @else { "less" } " than " (says)
                     }
                 }
                 ": fuel factor " (signed(Some(fuel_factor_percent(mean)))) " %"
@@ -105,6 +120,12 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
                 @if let Some(half) = half { " ± " (plain(Some(half))) }
                 "."
                 @if let Some(period) = view.period() { " Flown " (period) "." }
+            }
+            @if let Some(before) = before {
+                p {
+                    "The model that it began with is a polynomial through the guide's rows, which it misses here: its own mean error is "
+                    (signed(Some(before))) " %, “before”."
+                }
             }
             @if let Some(after) = &errors.after {
                 p {

@@ -96,10 +96,15 @@ fn numbers_are_those_of_the_document() {
     }
     assert!(page.contains(&format!("{} flights", json["tails"][0]["flights"])));
     // An error e is a share of what was recorded; what is said of the prediction is e/(100 − e) of it.
-    let error = errors["before"]["mean"].as_f64().unwrap();
+    let error = errors["book"]["mean"].as_f64().unwrap();
+    let before = errors["before"]["mean"].as_f64().unwrap();
+    assert!(page.contains(&format!("its own mean error is {before:+.2} %, “before”")), "{before}");
     let of_predicted = 100.0 * error / (100.0 - error);
     assert!((of_predicted - error).abs() > 0.01, "the two differ: {error}");
-    assert!(page.contains(&format!("It burns {of_predicted:.2} % more than")), "{of_predicted}");
+    assert!(
+        page.contains(&format!("It burns {of_predicted:.2} % more than its guide says")),
+        "{of_predicted}"
+    );
     assert!(page.contains(&format!("in % of recorded fuel flow: {error:+.2}")), "{error}");
 }
 

@@ -161,7 +161,8 @@ pub fn settled(
     if remainder == RemainderChoice::Learn {
         // `ModelFile::reference`, of which a part is borrowed already.
         let reference = model.by_guide.as_deref().unwrap_or(&model.initial);
-        stored.predicted = learning::remember_remainder(reference, learnt, &stored.segments);
+        stored.predicted =
+            learning::remember_remainder((reference, Some(&model.guide)), learnt, &stored.segments);
     } else if learnt.baseline.take().is_some() {
         notes.push(
             "the remainder of an earlier run is dropped: it belonged to the table before these flights"

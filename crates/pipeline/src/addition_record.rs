@@ -2,7 +2,9 @@
 
 use diagnose::{AddedEffect, Addition};
 use effects::{AppliedForm, EffectReferences};
-use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
+use flight::effect::{
+    DragRise, DragRiseLaw, EffectId, HiddenParameter, History, StepTarget, ThrottleArgument,
+};
 use serde::{Deserialize, Serialize};
 
 /// Effects of a verdict and what they are zero at.
@@ -30,6 +32,9 @@ struct AddedEffectRecord {
     throttle_argument: Option<ThrottleArgument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drag_divergence_mach: Option<f64>,
+    /// Left out where it is Lock's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    drag_rise: Option<DragRiseLaw>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     step_from_s: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -75,13 +80,17 @@ impl From<&AddedEffect> for AddedEffectRecord {
             throttle_pivot: None,
             throttle_argument: None,
             drag_divergence_mach: None,
+            drag_rise: None,
             step_from_s: None,
             step_target: None,
             history: None,
         };
         match added.hidden {
             HiddenParameter::None => {}
-            HiddenParameter::DragDivergenceMach(mach) => record.drag_divergence_mach = Some(mach),
+            HiddenParameter::DragRise(DragRise { divergence_mach, law }) => {
+                record.drag_divergence_mach = Some(divergence_mach);
+                record.drag_rise = (law != DragRiseLaw::Lock).then_some(law);
+            }
             HiddenParameter::Throttle { pivot, argument } => {
                 record.throttle_pivot = Some(pivot);
                 record.throttle_argument =
@@ -104,9 +113,10 @@ impl TryFrom<AddedEffectRecord> for AddedEffect {
         let effect = effect_of(&record.effect)?;
         let hidden = match effect.entry().hidden {
             HiddenParameter::None => HiddenParameter::None,
-            HiddenParameter::DragDivergenceMach(mach) => {
-                HiddenParameter::DragDivergenceMach(record.drag_divergence_mach.unwrap_or(mach))
-            }
+            HiddenParameter::DragRise(usual) => HiddenParameter::DragRise(DragRise {
+                divergence_mach: record.drag_divergence_mach.unwrap_or(usual.divergence_mach),
+                law: record.drag_rise.unwrap_or(usual.law),
+            }),
             HiddenParameter::Throttle { pivot, argument } => HiddenParameter::Throttle {
                 pivot: record.throttle_pivot.unwrap_or(pivot),
                 argument: record.throttle_argument.unwrap_or(argument),

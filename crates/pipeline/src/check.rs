@@ -14,6 +14,7 @@ mod fuel;
 mod ground;
 mod load;
 mod slips;
+mod spikes;
 
 use std::hash::{DefaultHasher, Hasher};
 
@@ -142,6 +143,7 @@ pub fn check_report(report: &Report) -> FlightCheck {
         ground::check(report),
         fuel::check(report, &flow_kg_s),
         channels::check(report),
+        spikes::check(report),
     ];
     checked(report, &flow_kg_s, drafts.into_iter().flatten())
 }

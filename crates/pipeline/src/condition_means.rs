@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use flight::{MAXIMUM_ENGINES, Segment};
+use perf_model::FlightPoint;
 use serde::{Deserialize, Serialize};
-use units::{PressureAltitude, Temperature, TemperatureDifference};
+use units::{Mach, Mass, PressureAltitude, Temperature, TemperatureDifference};
 
 /// A running mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,6 +77,18 @@ impl Conditions {
 }
 
 impl ConditionMeans {
+    /// The flight point of mean mass, pressure altitude, Mach number and deviation from the ISA; `None` where one of them is not kept.
+    pub(crate) fn mean_state(&self) -> Option<FlightPoint> {
+        Some(FlightPoint {
+            isa_deviation: TemperatureDifference::kelvin(self.mean("isa_deviation_k")?),
+            ..FlightPoint::new(
+                Mass::kilograms(self.mean("mass_kg")?),
+                PressureAltitude::meters(self.mean("pressure_altitude_m")?),
+                Mach::new(self.mean("mach")?),
+            )
+        })
+    }
+
     /// Adds the segments of a flight, one after the other: Welford's running mean, so that learning in two runs gives the same
     /// bits as in one. Signal by signal: each is looked up once.
     pub(crate) fn add(&mut self, segments: &[Conditions]) {

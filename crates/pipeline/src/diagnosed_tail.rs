@@ -35,6 +35,9 @@ pub struct Compared {
     pub law: Option<String>,
     /// Flights that it learnt.
     pub flights_learnt: usize,
+    /// Of which tail they were, where it is another than the one that was diagnosed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub learnt_tail: Option<String>,
     /// START of the first flight that was diagnosed.
     pub first_flight: Option<String>,
     /// START of the last one.

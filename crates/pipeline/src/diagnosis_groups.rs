@@ -230,6 +230,7 @@ impl Group<'_> {
             aircraft: self.model.initial.aircraft().name().to_owned(),
             law: learnt.map(|learnt| learnt.law.told()),
             flights_learnt: learnt.map_or(0, |learnt| learnt.ledger.len()),
+            learnt_tail: learnt.map(|learnt| learnt.tail.clone()).filter(|tail| *tail != self.name),
             first_flight: starts().min().map(|start| start.to_string()),
             last_flight: starts().max().map(|start| start.to_string()),
         }

@@ -6,8 +6,7 @@ use diagnose::SegmentGap;
 use flight::Timestamp;
 use monitor::Month;
 use serde::{Deserialize, Serialize};
-
-use crate::statistics::{ErrorStatistics, mean_half_width95_by_flight};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// The gap in one calendar month, UTC.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,7 +19,7 @@ pub struct MonthGap {
     pub segments: usize,
     /// Mean gap, %.
     pub mean_gap_percent: f64,
-    /// 95 % interval by flight; `null` for a single flight.
+    /// 95 % interval by flight, from how all flights scatter within their months; `null` where every month has one flight.
     pub ci95: Option<[f64; 2]>,
     /// Mean gap with the named effects in the model, of the sizes that all flights gave them, %; `null` where nothing is named.
     pub after_percent: Option<f64>,
@@ -44,14 +43,21 @@ pub fn months(segments: &[SegmentGap]) -> Vec<MonthGap> {
     let mut known: Vec<(Month, &SegmentGap)> =
         segments.iter().filter_map(|segment| Some((month_of(segment)?, segment))).collect();
     known.sort_by_key(|(month, segment)| (*month, segment.flight));
-    known.chunk_by(|a, b| a.0 == b.0).map(of_month).collect()
+    let months: Vec<&[(Month, &SegmentGap)]> = known.chunk_by(|a, b| a.0 == b.0).collect();
+    let scatter = [before, after].map(|value| Scatter::of(&months, value));
+    months.iter().map(|rows| of_month(rows, scatter)).collect()
 }
 
-fn of_month(rows: &[(Month, &SegmentGap)]) -> MonthGap {
-    let flights: Vec<&[(Month, &SegmentGap)]> =
-        rows.chunk_by(|a, b| a.1.flight == b.1.flight).collect();
-    let before = mean(&flights, |segment| Some(segment.before_percent));
-    let after = mean(&flights, |segment| segment.after_percent.last().copied());
+/// A flight's segments, with its month.
+type FlightRows<'r, 's> = &'r [(Month, &'s SegmentGap)];
+
+fn of_month(
+    rows: &[(Month, &SegmentGap)],
+    [scatter_before, scatter_after]: [Option<Scatter>; 2],
+) -> MonthGap {
+    let flights = flights_of(rows);
+    let before = mean(&flights, scatter_before, before);
+    let after = mean(&flights, scatter_after, after);
     MonthGap {
         month: rows.first().map_or_else(String::new, |(month, _)| month.to_string()),
         flights: flights.len(),
@@ -63,18 +69,78 @@ fn of_month(rows: &[(Month, &SegmentGap)]) -> MonthGap {
     }
 }
 
+fn flights_of<'r, 's>(rows: &'r [(Month, &'s SegmentGap)]) -> Vec<FlightRows<'r, 's>> {
+    rows.chunk_by(|a, b| a.1.flight == b.1.flight).collect()
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the signature of both values")]
+const fn before(segment: &SegmentGap) -> Option<f64> {
+    Some(segment.before_percent)
+}
+
+fn after(segment: &SegmentGap) -> Option<f64> {
+    segment.after_percent.last().copied()
+}
+
+/// How flights scatter about the means of their months.
+#[derive(Clone, Copy, Debug)]
+struct Scatter {
+    /// Standard deviation of a flight's mean, %.
+    deviation_percent: f64,
+    /// Student's quantile of as many flights less months.
+    quantile: f64,
+}
+
+impl Scatter {
+    /// Pooled over the months: two or three flights alone say little of how far their mean may be off. `None` where every month has
+    /// one flight, or a segment has no value.
+    ///
+    /// ```text
+    /// s² = Σ (flight − month)²/(flights − months),  half width t·s·√Σn²/Σn over the flights of a month, n their segments
+    /// ```
+    fn of(
+        months: &[&[(Month, &SegmentGap)]],
+        value: fn(&SegmentGap) -> Option<f64>,
+    ) -> Option<Self> {
+        let (mut squares, mut freedom) = (0.0, 0.0);
+        for month in months {
+            let means = flight_means(&flights_of(month), value)?;
+            let total: f64 = means.iter().map(|(_, count)| count).sum();
+            let mean = means.iter().map(|(mean, count)| mean * count).sum::<f64>() / total;
+            squares += means.iter().map(|(own, _)| (own - mean).powi(2)).sum::<f64>();
+            freedom += means.len() as f64 - 1.0;
+        }
+        if freedom < 1.0 {
+            return None;
+        }
+        let quantile = StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975);
+        Some(Self { deviation_percent: (squares / freedom).sqrt(), quantile })
+    }
+}
+
+/// Mean and number of segments of each flight; `None` where a segment has no value.
+fn flight_means(
+    flights: &[FlightRows<'_, '_>],
+    value: fn(&SegmentGap) -> Option<f64>,
+) -> Option<Vec<(f64, f64)>> {
+    let of_flight = |own: &FlightRows<'_, '_>| {
+        let sum = own.iter().map(|(_, one)| value(one)).sum::<Option<f64>>()?;
+        Some((sum / own.len() as f64, own.len() as f64))
+    };
+    flights.iter().map(of_flight).collect()
+}
+
 /// Mean over segments, and its 95 % interval by flight: segments of a flight err together. `None` where a segment has no value.
 fn mean(
-    flights: &[&[(Month, &SegmentGap)]],
-    value: impl Fn(&SegmentGap) -> Option<f64>,
+    flights: &[FlightRows<'_, '_>],
+    scatter: Option<Scatter>,
+    value: fn(&SegmentGap) -> Option<f64>,
 ) -> Option<(f64, Option<[f64; 2]>)> {
-    let of_flight = |own: &&[(Month, &SegmentGap)]| own.iter().map(|(_, one)| value(one)).collect();
-    let values: Vec<Vec<f64>> = flights.iter().map(of_flight).collect::<Option<_>>()?;
-    let all: Vec<f64> = values.iter().flatten().copied().collect();
-    let mean = ErrorStatistics::from_errors(&all).mean?;
-    let by_flight: Vec<ErrorStatistics> =
-        values.iter().map(|own| ErrorStatistics::from_errors(own)).collect();
-    let half = mean_half_width95_by_flight(&by_flight);
+    let means = flight_means(flights, value)?;
+    let total: f64 = means.iter().map(|(_, count)| count).sum();
+    let mean = means.iter().map(|(mean, count)| mean * count).sum::<f64>() / total;
+    let squares: f64 = means.iter().map(|(_, count)| count * count).sum();
+    let half = scatter.map(|of| of.quantile * of.deviation_percent * squares.sqrt() / total);
     Some((mean, half.map(|half| [mean - half, mean + half])))
 }
 
@@ -97,8 +163,8 @@ mod tests {
         }
     }
 
-    /// By hand: gaps of 1, 1 in one flight and 3, 3 in another have the mean 2, flights' sums ∓2, and a standard deviation of
-    /// √(2·8)/4 = 1; Student's quantile of two flights is 12.7062 (table).
+    /// By hand: gaps of 1, 1 in one flight and 3, 3 in another have the mean 2 and scatter by √2 about it, one flight more than
+    /// months; of their mean that is √2·√8/4 = 1, of the single flight of the other month √2; Student's quantile is 12.7062 (table).
     #[test]
     fn months_by_hand() {
         let segments = [
@@ -117,7 +183,13 @@ mod tests {
         assert!((low + 10.7062).abs() < 1e-4 && (high - 14.7062).abs() < 1e-4, "{january:?}");
         assert_eq!(january.after_ci95, Some([0.5, 0.5]));
         let february = &found[1];
-        assert_eq!((february.after_percent, february.ci95), (Some(-0.25), None));
+        assert_eq!(february.after_percent, Some(-0.25));
+        let [low, high] = february.ci95.unwrap();
+        let half = 12.7062 * 2.0_f64.sqrt();
+        assert!(
+            (low - 0.5 + half).abs() < 1e-3 && (high - 0.5 - half).abs() < 1e-3,
+            "{low} {high}"
+        );
     }
 
     #[test]

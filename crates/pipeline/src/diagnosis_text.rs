@@ -97,9 +97,10 @@ fn period(compared: &Compared) -> String {
 fn against(compared: &Compared) -> String {
     match &compared.law {
         Some(law) => format!(
-            "model {}, {law}, {} learnt",
+            "model {}, {law}, {}{} learnt",
             compared.aircraft,
-            counted(compared.flights_learnt, "flight")
+            counted(compared.flights_learnt, "flight"),
+            compared.learnt_tail.as_ref().map_or_else(String::new, |tail| format!(" of {tail}"))
         ),
         None => format!("model {}, which has learnt nothing", compared.aircraft),
     }

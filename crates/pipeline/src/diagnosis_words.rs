@@ -353,6 +353,10 @@ pub fn note_words(note: &Note) -> String {
             "anti-ice bleed is not recorded in {segments} of {of_segments} segments: anti_ice_bleed takes it as on above −40 °C \
              there"
         ),
+        Note::BeyondFlights { segments, of_segments } => format!(
+            "{segments} of {of_segments} segments lie beyond what the learnt flights flew: a gap there may be what those flights \
+             did not show"
+        ),
         Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
         Note::Outliers { segments, of_segments, flights } => {
             let whole = match flights {

@@ -7,7 +7,7 @@ use adapt::paper;
 use diagnose::{WholeModel, WholePrediction};
 use effects::ExtendedModel;
 use flight::{Observation, Segment, Timestamp};
-use lut::{Outside, Table};
+use lut::{Outside, SmoothCell, Table};
 
 use crate::learning::{LearningCurve, curve_of};
 use crate::model_file::ModelFile;
@@ -27,6 +27,8 @@ pub struct TailResult {
     pub model: ModelFile,
     /// Every segment, with what the initial (or given) table predicts for it.
     pub rows: Vec<SegmentRow>,
+    /// What the book predicts for each segment, as long as `rows`; empty where nothing is adapted.
+    pub book: Vec<Option<Evaluated>>,
     /// What the final table predicts for each segment, as long as `rows`; empty where nothing is adapted.
     pub after: Vec<Option<Evaluated>>,
     /// The figures.
@@ -73,22 +75,31 @@ impl TailResult {
 
     /// The same, given what the whole model predicts for each segment where that is known already.
     pub(crate) fn adapted_as_predicted(data: TailData, predicted: Option<&[Option<f64>]>) -> Self {
-        let initial = &data.model.initial;
-        let (before, after) = if let Some(whole) = data.model.whole(Predicts::WholeModel) {
-            // It refers to the initial table.
-            let before = evaluate(initial, initial.drag_table(), &data.segments);
-            let by_table = before.clone();
-            let after = evaluate_whole((&whole, predicted), &data.model, &data.segments, by_table);
-            (before, after)
-        } else {
-            let tables = (initial.drag_table(), data.model.drag_coefficient());
-            evaluate_by_two(initial, tables, &data.segments)
+        // A whole model says more than the table that it has learnt.
+        let whole = data.model.whole(Predicts::WholeModel);
+        let table = match whole {
+            Some(_) => data.model.initial.drag_table(),
+            None => data.model.drag_coefficient(),
         };
+        let ByTables { one: before, other: by_table, book } =
+            evaluate_with_book(&data.model, table, &data.segments);
+        let after = match &whole {
+            Some(whole) => {
+                evaluate_whole((whole, predicted), &data.model, &data.segments, by_table)
+            }
+            None => by_table,
+        };
+        drop(whole);
         let mut summary = summary_of(&data, &before);
         summary.informed_nodes = Some(data.model.informed_nodes());
         summary.refits = data.model.refits();
         summary.fuel_flow_error_percent.after = Some(statistics(&after));
-        Self::put_together(data, before, after, summary)
+        if data.model.by_guide.is_some() {
+            summary.fuel_flow_error_percent.book = Some(statistics(&book));
+            summary.book_half_width95_percent =
+                mean_half_width95_by_flight(&by_flight(&data, &book));
+        }
+        Self { book, ..Self::put_together(data, before, after, summary) }
     }
 
     /// The result of a model as it was given: errors of what it predicts now, nothing adapted.
@@ -146,7 +157,7 @@ impl TailResult {
             .zip(before)
             .map(|(segment, evaluated)| SegmentRow { segment, evaluated })
             .collect();
-        Self { tail, model, rows, after, summary, notes, curve }
+        Self { tail, model, rows, book: Vec::new(), after, summary, notes, curve }
     }
 
     /// How far off the model was on each flight before it learnt it; made anew where it is not known. Empty for a model that has
@@ -234,32 +245,94 @@ pub fn evaluate<'s>(
         .collect()
 }
 
-/// The same by two tables, in one pass where segments give one observation for both.
-fn evaluate_by_two(
-    model: &ExtendedModel,
-    (one, other): (&Table, &Table),
+/// What the book predicts for each segment: the drag of the guide's own rows, smooth between the nodes (`[bayes.14]`,
+/// `[tables.10]`), with or without the effects that the model contains.
+///
+/// A polynomial through those rows, and the chords of a table of it, are up to several per cent off, and what an aircraft burns more
+/// than its book, or a flight management system multiplies, is counted from the guide. A file that does not keep those rows has the
+/// initial table for a book.
+pub fn evaluate_book(
+    model: &ModelFile,
+    effects: BookEffects,
     segments: &[Segment],
-) -> (Vec<Option<Evaluated>>, Vec<Option<Evaluated>>) {
-    if model.effects().is_some() {
-        return (evaluate(model, one, segments), evaluate(model, other, segments));
+) -> Vec<Option<Evaluated>> {
+    let without;
+    let book = match effects {
+        BookEffects::OfModel => model.reference(),
+        BookEffects::None => {
+            without = ExtendedModel::from(model.reference().base().clone());
+            &without
+        }
+    };
+    if model.by_guide.is_none() {
+        return evaluate(book, book.drag_table(), segments);
     }
-    segments
-        .iter()
-        .map(|segment| {
-            if let Ok(observation) = model.observe(segment) {
-                let by = |table| Some(evaluated(table, segment, &observation));
-                (by(one), by(other))
-            } else {
-                let state = without_errors(model, segment);
-                (state, state)
-            }
-        })
-        .unzip()
+    let of_segment = |segment: &Segment| match book.observe(segment) {
+        Ok(observation) => Some(by_book(book.drag_table(), segment, &observation)),
+        Err(_) => without_errors(book, segment),
+    };
+    segments.iter().map(of_segment).collect()
+}
+
+/// Whether a book has the effects that its model contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BookEffects {
+    /// It has.
+    OfModel,
+    /// It has not.
+    None,
+}
+
+/// What two tables and the book predict for each segment.
+#[derive(Default)]
+struct ByTables {
+    one: Vec<Option<Evaluated>>,
+    other: Vec<Option<Evaluated>>,
+    book: Vec<Option<Evaluated>>,
+}
+
+/// By two tables and by the book, in one pass where segments give one observation for all.
+fn evaluate_with_book(model: &ModelFile, other: &Table, segments: &[Segment]) -> ByTables {
+    let initial = &model.initial;
+    let one = initial.drag_table();
+    if initial.effects().is_some() {
+        return ByTables {
+            one: evaluate(initial, one, segments),
+            other: evaluate(initial, other, segments),
+            book: evaluate_book(model, BookEffects::OfModel, segments),
+        };
+    }
+    let book = model.by_guide.as_ref().map(|guide| guide.drag_table());
+    let mut found = ByTables::default();
+    for segment in segments {
+        let by = if let Ok(observation) = initial.observe(segment) {
+            let by = |table| Some(evaluated(table, segment, &observation));
+            let by_one = by(one);
+            let by_guide = book.map(|book| by_book(book, segment, &observation));
+            (by_one, by(other), by_guide.or(by_one))
+        } else {
+            let state = without_errors(initial, segment);
+            (state, state, state)
+        };
+        found.one.push(by.0);
+        found.other.push(by.1);
+        found.book.push(by.2);
+    }
+    found
+}
+
+fn by_book(book: &Table, segment: &Segment, observation: &Observation) -> Evaluated {
+    let cell = SmoothCell::locate(book.grid(), observation.lift_coefficient, observation.mach);
+    let error = cell.ok().map(|cell| paper::error_percent_of(cell.value_of(book), observation));
+    with_error(segment, observation, error)
 }
 
 /// What a table predicts for a segment that gives this observation.
 pub(crate) fn evaluated(table: &Table, segment: &Segment, observation: &Observation) -> Evaluated {
-    let error = error_percent(table, observation);
+    with_error(segment, observation, error_percent(table, observation))
+}
+
+fn with_error(segment: &Segment, observation: &Observation, error: Option<f64>) -> Evaluated {
     Evaluated {
         lift_coefficient: observation.lift_coefficient,
         drag_coefficient: observation.drag_coefficient,
@@ -302,8 +375,13 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
         interval95_coverage: None,
         mean_error_within_percent: None,
         beyond_flights: None,
-        fuel_flow_error_percent: ErrorsSummary { before: statistics(before), after: None },
+        fuel_flow_error_percent: ErrorsSummary {
+            before: statistics(before),
+            after: None,
+            book: None,
+        },
         mean_error_half_width95_percent: mean_half_width95_by_flight(&by_flight(data, before)),
+        book_half_width95_percent: None,
     }
 }
 

@@ -14,7 +14,8 @@ use flight::{FlightIdentity, Observation, Segment};
 use refit::RefitRule;
 
 use crate::condition_means::{ConditionMeans, Conditions};
-use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
+use crate::model_file::{GuideRecord, LawState, Learnt, LedgerEntry, PaperSettings};
+use crate::table_uncertainty::states_of;
 use crate::whole_model::belief_before_flights;
 
 pub(crate) use again::LearningAgain;
@@ -186,8 +187,9 @@ pub type LnFuelFlows = Vec<Option<f64>>;
 
 /// Learns, from every segment of a tail, everything that flights show of it, the table included, in one posterior (law
 /// `bayes`). From fewer than five flights nothing is learnt. Returns what the model then predicts for each segment.
+/// `guide` says which masses and levels the initial model is of.
 pub fn remember_remainder(
-    initial: &ExtendedModel,
+    (initial, guide): (&ExtendedModel, Option<&GuideRecord>),
     learnt: &mut Learnt,
     segments: &[Segment],
 ) -> Option<LnFuelFlows> {
@@ -197,7 +199,7 @@ pub fn remember_remainder(
         .chunk_by(|one, other| one.identity == other.identity)
         .map(|segments| FlightRecord { segments, gauges: gauges.of(&segments[0].identity) })
         .collect();
-    let (baseline, predicted) = baseline_of(initial, *state.settings(), &flights)
+    let (baseline, predicted) = baseline_of((initial, guide), *state.settings(), &flights)
         .inspect(|(baseline, _)| tell_of_physics(&learnt.tail, baseline))
         .inspect_err(|reason| {
             tracing::info!(tail = learnt.tail, "no remainder is remembered: {reason}");
@@ -244,13 +246,14 @@ fn tell_of_physics(tail: &str, baseline: &Baseline) {
 
 /// Everything that flights say of a model, against its initial table.
 fn baseline_of(
-    initial: &ExtendedModel,
+    (initial, guide): (&ExtendedModel, Option<&GuideRecord>),
     settings: BayesSettings,
     flights: &[FlightRecord<'_>],
 ) -> Result<(Baseline, LnFuelFlows), String> {
     let table = initial.drag_table();
     let visited = visited_nodes(initial, table, flights).map_err(|error| error.to_string())?;
     let belief = belief_before_flights(initial, settings, &visited).map_err(|e| e.to_string())?;
+    let belief = belief.with_guide(guide.and_then(states_of));
     let half_life_days = settings.values().half_life_days;
     Baseline::learn_and_predict(initial, table, Some(belief), flights, half_life_days)
         .map_err(|error| error.to_string())

@@ -13,7 +13,10 @@ use crate::adaptation::{Material, RemainderChoice, materials, rebuild, settled};
 use crate::learning::{self, LearningError};
 use crate::learnt_flights::KnownFlight;
 use crate::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
+use crate::prediction::Predictor;
+use crate::whole_model::Predicts;
 use flight::{Segment, Timestamp};
+use perf_model::FlightPoint;
 
 /// A model to merge.
 #[derive(Clone, Debug)]
@@ -31,6 +34,35 @@ pub enum Merging {
     LearntAgain,
     /// Sums were added: the table alone, with the outlier weights that each flight got among the flights of its own model.
     Added,
+}
+
+/// By how much tails that were merged differ from each other: standard deviation of the fuel flow that their models predict at the mean
+/// state of each, %. `None` of one tail, and where a state cannot be predicted.
+///
+/// A merged model states how well it knows the mean of its tails, as of one aircraft.
+#[must_use]
+pub fn spread_of_tails_percent(models: &[ModelFile]) -> Option<f64> {
+    let learnt: Vec<&Learnt> =
+        models.iter().map(|one| one.learnt.as_ref()).collect::<Option<_>>()?;
+    let tails: BTreeSet<&str> = learnt.iter().map(|one| one.tail.as_str()).collect();
+    if tails.len() < 2 {
+        return None;
+    }
+    let states: Vec<FlightPoint> =
+        learnt.iter().map(|one| one.references.mean_state()).collect::<Option<_>>()?;
+    let mut levels = Vec::with_capacity(models.len());
+    for model in models {
+        let predictor = Predictor::new(model, Predicts::WholeModel).ok()?.without_deviations();
+        let mut sum = 0.0;
+        for state in &states {
+            let found = predictor.at(state).ok()?;
+            sum += 100.0 * found.prediction.fuel_flow_total.to_kilograms_per_second().ln();
+        }
+        levels.push(sum / states.len() as f64);
+    }
+    let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+    let squares: f64 = levels.iter().map(|level| (level - mean).powi(2)).sum();
+    Some((squares / (levels.len() as f64 - 1.0)).sqrt())
 }
 
 /// Why two models do not add up.

@@ -91,6 +91,15 @@ pub fn highest_known_level(model: &ModelFile) -> Option<PressureAltitude> {
     Some(PressureAltitude::meters(highest_m))
 }
 
+/// The smallest and the largest mass of a model's guide and of what its flights flew, kg; `None` where the model's file keeps neither.
+#[must_use]
+pub fn known_masses_kg(model: &ModelFile) -> Option<(f64, f64)> {
+    let learnt = model.learnt.as_ref();
+    let flown = learnt.and_then(|learnt| learnt.baseline.as_ref()?.flown(effects::Variable::Mass));
+    let both = [model.guide.mass_kg, flown].into_iter().flatten();
+    both.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
+}
+
 /// Nineteen levels, every 1,000 ft, up to the highest of guide and flights: no model knows a ceiling. Up to 43,000 ft where its
 /// file keeps neither.
 #[must_use]

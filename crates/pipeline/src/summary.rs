@@ -117,6 +117,9 @@ pub struct TailSummary {
     /// with errors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_error_half_width95_percent: Option<f64>,
+    /// The same of the mean error of the guide's own rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub book_half_width95_percent: Option<f64>,
     /// Share of errors within the stated 95 % interval of a segment; absent where the law states none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval95_coverage: Option<f64>,
@@ -146,6 +149,18 @@ pub struct ErrorsSummary {
     /// Of the final table; absent where nothing is adapted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<ErrorStatistics>,
+    /// Of the guide's own rows, smooth between the nodes, in place of the polynomial through them; absent where nothing is adapted,
+    /// and where the model does not keep those rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub book: Option<ErrorStatistics>,
+}
+
+impl ErrorsSummary {
+    /// Against what a planner has: the guide's own rows, or the initial model where they are not kept.
+    #[must_use]
+    pub fn against_book(&self) -> &ErrorStatistics {
+        self.book.as_ref().unwrap_or(&self.before)
+    }
 }
 
 impl Summary {

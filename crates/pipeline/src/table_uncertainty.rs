@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, Posterior};
-use diagnose::{FlightRecord, TableUncertainty, TableUncertaintyError, visited_nodes};
+use diagnose::{FlightRecord, GuideStates, TableUncertainty, TableUncertaintyError, visited_nodes};
 use effects::{ExtendedModel, GuideRange, lost_rises};
 
 use crate::model_file::{GuideRecord, ModelFile};
@@ -96,6 +96,14 @@ impl Belief<'_> {
         let lost = guide.map_or_else(Vec::new, |guide| lost_of_guide(model, drag_table, guide));
         Ok(of_visited_and(posterior, drag_table.grid(), &visited, scale, &lost)?.of_book())
     }
+}
+
+/// Masses and levels of a guide; `None` of model files from before they were kept.
+pub(crate) fn states_of(guide: &GuideRecord) -> Option<GuideStates> {
+    Some(GuideStates {
+        masses_kg: guide.mass_kg?,
+        pressure_altitudes_m: guide.pressure_altitude_m?,
+    })
 }
 
 /// Relative errors of the nodes by what the polynomial lost of the guide, one vector a shape, their squares to be summed. None where

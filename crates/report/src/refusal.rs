@@ -283,6 +283,11 @@ pub enum RefusalKind {
         /// The recording's name of the column.
         name: String,
     },
+    /// Most rows of a flight lack a number that the report needs.
+    SourceColumnEmpty {
+        /// The recording's name of the column that most of them lack.
+        name: String,
+    },
     /// An instant of a recording that is not of the form that the mapping states.
     SourceInstantMalformed,
     /// Gross mass that rises by more than the mapping allows.

@@ -197,7 +197,7 @@ pub(crate) fn adapted(
         all.extend(flight.segments.iter().cloned());
     }
     learning::settle(&mut learnt)?;
-    learning::remember_remainder(&initial, &mut learnt, &all);
+    learning::remember_remainder((&initial, None), &mut learnt, &all);
     // A baseline has the table's uncertainty, joint with everything else that it has learnt, against the initial table.
     let uncertainty = match &learnt.law {
         LawState::Bayes { posterior, .. } if learnt.baseline.is_none() => {

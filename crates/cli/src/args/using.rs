@@ -57,7 +57,7 @@ pub(crate) struct EvaluateArgs {
     /// states it
     #[arg(long, short, value_name = "RESIDUALS")]
     pub(crate) output: Option<PathBuf>,
-    /// Also write the fuel factor of each tail against the book (the initial table), in all and by condition, .csv or
+    /// Also write the fuel factor of each tail against the book (the rows of its guide), in all and by condition, .csv or
     /// .parquet
     #[arg(long, value_name = "FACTORS")]
     pub(crate) fuel_factors: Option<PathBuf>,

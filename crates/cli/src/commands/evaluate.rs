@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use effects::ExtendedModel;
 use flight::{FlightIdentity, Segment};
 
 use crate::args::EvaluateArgs;
@@ -13,7 +12,7 @@ use crate::files::outputs::check_not_read;
 use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
-use pipeline::evaluation::{self, TailResult};
+use pipeline::evaluation::{BookEffects, TailResult, evaluate_book};
 use pipeline::fuel_factor::{self, FuelFactor};
 use pipeline::model_file::ModelFile;
 use pipeline::residuals::{self, FlightResiduals, GivenFlight};
@@ -157,11 +156,10 @@ impl EvaluatedTail {
         Ok(of_flight.into_iter().zip(found).collect())
     }
 
-    /// The fuel factors of the tail against its book: the initial table, without effects.
+    /// The fuel factors of the tail against its book: the drag of the guide's own rows, without effects.
     fn fuel_factors(&self) -> Vec<FuelFactor> {
-        let book = ExtendedModel::from(self.result.model.initial.base().clone());
         let segments = self.segments();
-        let evaluated = evaluation::evaluate(&book, book.drag_table(), &segments);
+        let evaluated = evaluate_book(&self.result.model, BookEffects::None, &segments);
         fuel_factor::of_tail(&self.result.tail, &segments, &evaluated)
     }
 }

@@ -42,23 +42,28 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;
     let masses = match &arguments.mass_kg[..] {
         [] => optimum::usual_masses(&file).unwrap_or_default(),
-        given => positive("--mass-kg", given)?.into_iter().map(Mass::kilograms).collect(),
+        given => {
+            let given = each_once(positive("--mass-kg", given)?);
+            warn_of_masses(&file, &given);
+            given.into_iter().map(Mass::kilograms).collect()
+        }
     };
     let mut levels = match &arguments.levels[..] {
         [] => optimum::usual_levels(&file),
         given => {
-            within("--levels", given, LEVELS_FT)?.into_iter().map(PressureAltitude::feet).collect()
+            let given = each_once(within("--levels", given, LEVELS_FT)?);
+            given.into_iter().map(PressureAltitude::feet).collect()
         }
     };
     levels.sort_by(|one, other| one.to_feet().total_cmp(&other.to_feet()));
     let cost_index = arguments.cost_index.map(CostIndex::kilograms_per_minute);
-    let tailwinds = within("--tailwind", &arguments.tailwind, TAILWINDS_KT)?;
+    let tailwinds = each_once(within("--tailwind", &arguments.tailwind, TAILWINDS_KT)?);
     let question = Question {
         levels,
         tailwinds: tailwinds.into_iter().map(TrueAirspeed::knots).collect(),
         cost_index,
     };
-    let days = within("--isa-deviation", &arguments.isa_deviation, DAYS_K)?;
+    let days = each_once(within("--isa-deviation", &arguments.isa_deviation, DAYS_K)?);
     let asked: Vec<MassAndDay> = masses
         .iter()
         .flat_map(|mass| {
@@ -93,6 +98,28 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     let refused = optimum::without_optimum(&conditions).into_iter();
     let refused = refused.map(|reason| RefusedReport::whole(arguments.model.clone(), reason));
     Ok(Outcome { refused: refused.collect(), ..Outcome::with_json(text, json) })
+}
+
+/// In the order given: what is asked for twice is answered once.
+fn each_once(mut values: Vec<f64>) -> Vec<f64> {
+    let mut known: Vec<f64> = Vec::with_capacity(values.len());
+    values.retain(|value| {
+        let is_new = !known.contains(value);
+        known.push(*value);
+        is_new
+    });
+    values
+}
+
+/// A lift coefficient and a Mach number are inside a table at any mass, if only the level is low enough: pounds in place of kilograms
+/// give an optimum too.
+fn warn_of_masses(file: &ModelFile, masses_kg: &[f64]) {
+    let Some((low_kg, high_kg)) = optimum::known_masses_kg(file) else { return };
+    for mass_kg in masses_kg.iter().filter(|mass_kg| !(low_kg..=high_kg).contains(*mass_kg)) {
+        tracing::warn!(
+            "--mass-kg {mass_kg}: guide and flights have {low_kg:.0} to {high_kg:.0} kg; what is said of it is continued from there"
+        );
+    }
 }
 
 /// Between nodes that bend evenly a smooth surface is nearer to the truth than chords; between such as law `paper` leaves it

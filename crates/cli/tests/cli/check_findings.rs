@@ -232,7 +232,7 @@ fn every_kind_of_finding_is_planted() {
     // The page lists every kind; each of them is expected of some slip.
     let planted: BTreeSet<&str> = (SLIPS.iter().chain(&MORE_SLIPS).map(|(_, _, code)| *code))
         .chain(OF_SEVERAL_FLIGHTS)
-        .chain(["rows-left-out", "minutes-left-out", "not-evaluated"])
+        .chain(["rows-left-out", "minutes-left-out", "channel-spiked", "not-evaluated"])
         .collect();
     let page = std::fs::read_to_string(root().join("docs/src/guides/check.md")).unwrap();
     let listed: Vec<&str> = page
@@ -303,6 +303,34 @@ fn minutes_with_too_few_samples_are_a_finding_and_explained() {
     arguments.extend(planted(folder.path(), slower).into_iter().map(PathBuf::into_os_string));
     let ran = cruisefit(&arguments);
     assert!(ran.stderr.contains("15 minutes dropped for too few samples"), "{}", ran.stderr);
+}
+
+/// Twenty minutes at one sample a second, of which every fiftieth has ten times the fuel flow of engine 1: 24 of 1200, nine times the
+/// mean too much, 18 %.
+#[test]
+fn spikes_of_fuel_flow_are_a_finding() {
+    let spiked = |text: &str| {
+        let row = |text: &str| {
+            let before = text.lines().position(|line| line.starts_with("TIME")).unwrap() + 2;
+            let line = text.lines().nth(before).unwrap().trim_start().to_owned();
+            (before, line.split_once(' ').unwrap().1.to_owned())
+        };
+        let (before, usual) = row(text);
+        let (_, high) = row(&column(text, "WF(1)", |flow| 10.0 * flow));
+        let mut lines: Vec<String> = text.lines().take(before).map(str::to_owned).collect();
+        lines.extend((0..1200).map(|time| {
+            let rest = if time % 50 == 7 { &high } else { &usual };
+            format!("{time} {rest}")
+        }));
+        lines.join("\n") + "\n"
+    };
+    let found = told(spiked);
+    let of_spikes = found.iter().find(|[code, ..]| code == "channel-spiked");
+    let [_, message, ..] = of_spikes.unwrap_or_else(|| panic!("{found:?}"));
+    assert_eq!(
+        message,
+        "24 of 1200 samples of WF(1) are more than 30 % off those beside them and move its mean by +18.0 %"
+    );
 }
 
 /// A tenth of the rows of a recording cannot be read.

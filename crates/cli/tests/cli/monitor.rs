@@ -55,8 +55,8 @@ fn tables_json_and_text_agree_and_hold_their_schema() {
     assert_eq!(numbers(&flights["deviation_percent"])[0].to_bits(), deviation.to_bits());
 }
 
-/// Against the error that `adapt` wrote: 100 ln(recorded/predicted) of the initial model, and of the initial model again
-/// before the first flight, because nothing had been learnt then.
+/// Against the fuel factor of `evaluate`, which is the mean over flights of the same deviation from the book, and against the error that
+/// `adapt` wrote: 100 ln(recorded/predicted) of the initial model before the first flight, because nothing had been learnt then.
 #[test]
 fn deviations_are_those_of_the_segments() {
     let folder = tempfile::tempdir().unwrap();
@@ -67,7 +67,15 @@ fn deviations_are_those_of_the_segments() {
     let segments_file = std::fs::read_dir(adapted.join("segments")).unwrap().next().unwrap();
     let segments = csv_columns(&segments_file.unwrap().path());
     let shown = numbers(&flights["initial_deviation_percent"]);
-    for (place, flight) in flights["flight"].iter().enumerate() {
+    let factors = folder.path().join("factors.csv");
+    let mut words: Vec<std::ffi::OsString> = vec!["evaluate".into(), fixture("reports").into()];
+    words.extend(["--model".into(), initial_model(folder.path()).into()]);
+    words.extend(["--fuel-factors".into(), factors.clone().into()]);
+    cruisefit(&words).expect(0);
+    let factor = numbers(&csv_columns(&factors)["fuel_factor_percent_of_predicted"])[0];
+    let mean = shown.iter().sum::<f64>() / shown.len() as f64;
+    assert!((100.0 * (factor / 100.0).ln_1p() - mean).abs() < 1e-9, "{factor} against {mean}");
+    let of_initial = |flight: &str| {
         let rows = segments["flight"].iter().enumerate().filter(|(_, name)| *name == flight);
         let errors: Vec<f64> = rows
             .filter(|(row, _)| !segments["error_percent"][*row].is_empty())
@@ -75,11 +83,11 @@ fn deviations_are_those_of_the_segments() {
             .collect();
         // error = 100 (recorded − predicted)/recorded, so that predicted/recorded = 1 − error/100.
         let deviations = errors.iter().map(|error| -100.0 * (1.0 - error / 100.0).ln());
-        let mean = deviations.sum::<f64>() / errors.len() as f64;
-        assert!((shown[place] - mean).abs() < 1e-9, "{flight}: {} against {mean}", shown[place]);
-    }
+        deviations.sum::<f64>() / errors.len() as f64
+    };
     let first: f64 = flights["before_learning_percent"][0].parse().unwrap();
-    assert!((first - shown[0]).abs() < 1e-9);
+    let expected = of_initial(&flights["flight"][0]);
+    assert!((first - expected).abs() < 1e-9, "{first} against {expected}");
     // The book is several per cent too optimistic; what the model knew after the first flights is not.
     let last: f64 = flights["before_learning_percent"].last().unwrap().parse().unwrap();
     assert!(shown.last().unwrap().abs() > 2.0 && last.abs() < 1.5, "{shown:?} {last}");
@@ -90,12 +98,25 @@ fn alerts_set_the_exit_status_and_name_likely_causes() {
     let folder = tempfile::tempdir().unwrap();
     let adapted = adapted(folder.path());
     let diagnosis = folder.path().join("diagnosis.json");
-    let text = r#"{"diagnoses": [{"tail": "SIM-01", "verdict": {"kind": "effects", "effects": ["drag_factor"],
-        "class": ["drag_factor", "tsfc_factor"], "probability": 0.83, "closure": 0.9}}]}"#;
+    let text = r#"{"diagnoses": [{"tail": "SIM-01", "compared": {"flights_learnt": 0},
+        "verdict": {"kind": "effects", "effects": ["drag_factor"], "class": ["drag_factor", "tsfc_factor"],
+        "probability": 0.83, "closure": 0.9}}]}"#;
     std::fs::write(&diagnosis, text).unwrap();
     let more = ["--alert", "deviation=1", "--diagnosis", diagnosis.to_str().unwrap()];
     let printed = monitor(&adapted, &more).expect(3).stdout;
     assert!(printed.contains("ALERT SIM-01"), "{printed}");
+    assert!(printed.contains("likely: drag_factor, tsfc_factor"), "{printed}");
+    // The tail's own model has learnt what it burns beyond its book; another tail's has not.
+    let against =
+        |learnt: &str| std::fs::write(&diagnosis, text.replace(r#""flights_learnt": 0"#, learnt));
+    against(r#""flights_learnt": 40"#).unwrap();
+    let printed = monitor(&adapted, &more).expect(3).stdout;
+    assert!(
+        printed.contains("no likely cause: the newest diagnosis is against the tail's own model"),
+        "{printed}"
+    );
+    against(r#""flights_learnt": 40, "learnt_tail": "SIM-02""#).unwrap();
+    let printed = monitor(&adapted, &more).expect(3).stdout;
     assert!(printed.contains("likely: drag_factor, tsfc_factor"), "{printed}");
     monitor(&adapted, &["--alert", "deviation=50"]).expect(0);
     monitor(&adapted, &["--alert", "speed=1"]).expect(2).says("expected deviation=PCT");
@@ -119,8 +140,9 @@ fn what_does_not_stand_out_is_no_likely_cause() {
         (r#""no_gap", "effects": [], "class": [], "probability": 0.0"#, "no gap is seen"),
         (r#""outside_library", "effects": [], "class": [], "probability": 0.0"#, "no effect of"),
     ] {
-        let text =
-            format!(r#"{{"diagnoses": [{{"tail": "SIM-01", "verdict": {{"kind": {verdict}}}}}]}}"#);
+        let text = format!(
+            r#"{{"diagnoses": [{{"tail": "SIM-01", "compared": {{}}, "verdict": {{"kind": {verdict}}}}}]}}"#
+        );
         std::fs::write(&diagnosis, text).unwrap();
         let more = ["--alert", "deviation=1", "--diagnosis", diagnosis.to_str().unwrap()];
         let printed = monitor(&adapted, &[&more[..], &["-o", output.to_str().unwrap()]].concat());

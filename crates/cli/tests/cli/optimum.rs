@@ -22,6 +22,12 @@ fn optima_as_table_csv_and_json() {
     let ran = cruisefit(&arguments(&asked)).expect(0);
     assert_eq!(ran.stdout.lines().filter(|line| line.starts_with("max range")).count(), 2);
     let first = std::fs::read(&json).unwrap();
+    assert!(!ran.stderr.contains("--mass-kg"), "{}", ran.stderr);
+    let twice =
+        ["--mass-kg", "28000,28000,32000", "--cost-index", "5", "-o", files[0], "-o", files[1]];
+    cruisefit(&arguments(&twice)).expect(0);
+    assert_eq!(std::fs::read(&json).unwrap(), first, "what is asked for twice is answered once");
+    cruisefit(&arguments(&["--mass-kg", "70000"])).says("--mass-kg 70000: guide and flights have");
     cruisefit(&arguments(&asked)).expect(0);
     assert_eq!(std::fs::read(&json).unwrap(), first, "same input, same bytes");
 

@@ -1,7 +1,7 @@
 //! Effects that a fleet shows at all times.
 
 use effects::EffectPoint;
-use flight::effect::{EffectId, HiddenParameter, NeededInput};
+use flight::effect::{DragRise, EffectId, HiddenParameter, NeededInput};
 
 use crate::priors::{CARRIED_DEVIATION, CARRIED_DRAG_RISE_MACHS, CARRIED_SLOPE_DEVIATION};
 
@@ -43,6 +43,6 @@ pub(crate) const fn standing_effect(id: EffectId, deviation: f64) -> StandingEff
 }
 
 const fn drag_rise(drag_divergence_mach: f64) -> StandingEffect {
-    let hidden = HiddenParameter::DragDivergenceMach(drag_divergence_mach);
+    let hidden = HiddenParameter::DragRise(DragRise::by_lock(drag_divergence_mach));
     StandingEffect { id: EffectId::WaveDrag, hidden, deviation: CARRIED_DEVIATION }
 }

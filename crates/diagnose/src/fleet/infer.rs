@@ -17,6 +17,7 @@ use crate::priors::{
 };
 use crate::signals::references::DiagnoseError;
 use crate::thresholds::{FALSE_DISCOVERIES, FEWEST_TAILS_OF_A_FLEET, FLEET_SWEEPS};
+use flight::effect::EffectId;
 
 /// Diagnoses all tails of a type together. Takes their Gram matrices, which are most of the memory of a large fleet.
 ///
@@ -266,14 +267,18 @@ impl Fleet {
                 levels.push(level);
             }
         }
+        let mut class: Vec<EffectId> = acting.class.iter().map(|&k| id(k)).collect();
+        let unasked = tail.map_or(&[][..], |_| unasked_rivals(id(acting.effect)));
+        let among = 1 + unasked.len();
+        class.extend(unasked);
         FleetFinding {
             level: level(acting.effect),
             levels,
             tail,
             effect: id(acting.effect),
-            class: acting.class.iter().map(|&k| id(k)).collect(),
+            class,
             probability: acting.probability,
-            effect_probability: acting.own_probability,
+            effect_probability: acting.own_probability / among as f64,
             magnitude: tail.map_or_else(
                 || sizes.of_type[acting.effect],
                 |tail| sizes.own[tail][acting.effect],
@@ -286,6 +291,16 @@ impl State {
     /// Whether the same effects are free.
     fn is_like(&self, other: &Self) -> bool {
         self.free == other.free && self.type_free == other.type_free
+    }
+}
+
+/// What else may make a tail change with time. A fleet's tails are compared without dates: what began at one, or gathered and was taken
+/// back, is taken for a steady ageing, and nothing here tells them apart.
+const fn unasked_rivals(effect: EffectId) -> &'static [EffectId] {
+    match effect {
+        EffectId::EngineAgeing => &[EffectId::StepChange, EffectId::EngineHistory],
+        EffectId::AirframeAgeing => &[EffectId::StepChange, EffectId::AirframeHistory],
+        _ => &[],
     }
 }
 

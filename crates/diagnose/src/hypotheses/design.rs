@@ -71,10 +71,12 @@ impl<'a> Design<'a> {
         let acceleration = share_of_error(data);
         let is_bled = |row: &SegmentRow| row.point.anti_ice.is_some_and(|share| share > 0.0);
         let beyond = Beyond::of(baseline, &data.segments);
+        let is_of_another =
+            baseline.is_some_and(|baseline| baseline.of_another || data.of_other_aircraft);
         let uncertain = Uncertain {
             beyond: beyond.len(),
             drift: if data.engines_change { data.channels.contrasts } else { 0 },
-            n2_level: usize::from(data.channels.n2 && data.of_other_aircraft && baseline.is_some()),
+            n2_level: usize::from(data.channels.n2 && is_of_another),
             deck: data.channels.n2,
             bleed: data.channels.n2 && data.segments.iter().any(is_bled),
             gauges: data.flights.iter().any(|flight| flight.gauge.is_some()),

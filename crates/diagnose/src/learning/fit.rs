@@ -6,6 +6,7 @@ use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::channel::{LearntChannel, learn_channel};
 use crate::learning::correlation::{Left, correlation_factor};
+use crate::learning::guide::Guide;
 use crate::learning::physical::Physics;
 use crate::learning::rows::{ChannelRows, fuel_flow_columns};
 use crate::learning::turned::TurnedFlights;
@@ -30,7 +31,7 @@ impl Baseline {
     pub(super) fn fit(
         &mut self,
         data: &PreparedFlights<'_>,
-        physics: &Physics,
+        (physics, guide): (&Physics, &Guide),
     ) -> Result<(), DiagnoseError> {
         let layout = self.layout();
         let width = layout.len();
@@ -66,6 +67,7 @@ impl Baseline {
             let channels = (Left::of(0, &fuel), Left::of(data.channels.n2_row(), &deck));
             self.parts.noise.fuel_flow_with_n2 = correlation_factor(data, channels.0, channels.1);
         }
+        guide.hold(self, &mut joint.mean, &mut joint.covariance, &deviations);
         self.hold_to_physics(physics, &mut joint, &deviations);
         self.keep(data, &joint, &deviations)?;
         self.summarize(data, &fuel.left);

@@ -7,6 +7,7 @@ use units::convert::SECONDS_PER_DAY;
 use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, BaselineRecord};
+use crate::learning::guide::Guide;
 use crate::learning::physical::Physics;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
@@ -126,7 +127,8 @@ impl Baseline {
         count_by_age(&mut data.flights, half_life_days);
         let mut baseline = Self::prior(&data, &references, table);
         let physics = Physics::of(&effect_model, &baseline, &data);
-        baseline.fit(&data, &physics)?;
+        let guide = Guide::of(&effect_model, &baseline, &data, model.extrapolated());
+        baseline.fit(&data, (&physics, &guide))?;
         Ok((baseline, data.segments))
     }
 
@@ -164,7 +166,7 @@ impl Baseline {
             rms: f64::NAN,
             gauges: level_of(&data.flights),
         };
-        let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0) };
+        let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0), of_another: false };
         let layout = baseline.layout();
         baseline.parts.mean = vec![0.0; layout.contrasts.end];
         baseline.factor = Mat::zeros(layout.len(), layout.len());

@@ -173,12 +173,43 @@ impl Node {
 }
 
 /// Dynamic pressure times area, N: the force at a coefficient of 1.
-fn force_n(static_pressure_pa: f64, mach: f64, area_m2: f64) -> f64 {
+pub(super) fn force_n(static_pressure_pa: f64, mach: f64, area_m2: f64) -> f64 {
     0.5 * RATIO_OF_SPECIFIC_HEATS * static_pressure_pa * mach * mach * area_m2
 }
 
+/// What the slopes of a state are made from.
+pub(super) struct Mesh<'a, 'm> {
+    model: &'a EffectModel<'m>,
+    baseline: &'a Baseline,
+    data: &'a PreparedFlights<'m>,
+    differences: Vec<Difference>,
+}
+
+impl<'a, 'm> Mesh<'a, 'm> {
+    pub(super) fn new(
+        model: &'a EffectModel<'m>,
+        baseline: &'a Baseline,
+        data: &'a PreparedFlights<'m>,
+    ) -> Self {
+        let differences = STANDING_EFFECTS
+            .iter()
+            .map(|effect| {
+                let step = 0.5 * baseline.references().typical_size(effect.id);
+                Difference::new(model, &Effects::none(), effect.id, effect.hidden, step)
+            })
+            .collect();
+        Self { model, baseline, data, differences }
+    }
+
+    /// Slopes of ln fuel flow along the coefficients, and the response there.
+    pub(super) fn slopes(&self, point: &EffectPoint) -> Option<(Vec<f64>, Response)> {
+        let node = Node::new(self.model, self.baseline, self.data, &self.differences, point)?;
+        Some((node.slopes, node.response))
+    }
+}
+
 /// Evenly from the first to the last value, in steps of at most one.
-fn mesh(first: f64, last: f64, step: f64) -> Vec<f64> {
+pub(super) fn mesh(first: f64, last: f64, step: f64) -> Vec<f64> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -43,7 +43,7 @@ impl Addition {
 
 #[cfg(test)]
 mod tests {
-    use flight::effect::StepTarget;
+    use flight::effect::{DragRise, StepTarget};
 
     use super::*;
 
@@ -66,7 +66,7 @@ mod tests {
             center_of_gravity_percent_mac: None,
         };
         let step = HiddenParameter::Step { from_s: 1.6e9, target: StepTarget::Drag };
-        let rise = HiddenParameter::DragDivergenceMach(0.86);
+        let rise = HiddenParameter::DragRise(DragRise::by_lock(0.86));
         let addition = Addition {
             effects: vec![
                 effect(EffectId::StepChange, 1.5, step),

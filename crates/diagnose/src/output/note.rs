@@ -21,6 +21,13 @@ pub enum Note {
         /// Segments that the model can predict.
         of_segments: usize,
     },
+    /// Segments lie beyond what the flights that taught the model flew: what is seen there may be what those did not show.
+    BeyondFlights {
+        /// Segments beyond.
+        segments: usize,
+        /// Segments that the model can predict.
+        of_segments: usize,
+    },
     /// References of effects are the means of these flights.
     ReferencesAreMeans,
     /// Whitened residuals have heavy tails: segments are weighed.

@@ -17,7 +17,7 @@ mod noise;
 mod states;
 
 use effects::{EffectModel, EffectPoint, drag_rise};
-use flight::effect::{EffectId, HiddenParameter};
+use flight::effect::{DragRise, DragRiseLaw, EffectId, HiddenParameter};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use perf_model::{FlightPoint, LevelBlock};
 use units::{Mach, Mass, PressureAltitude};
@@ -299,7 +299,10 @@ fn standing_effects(model: &EffectModel<'_>, baseline: &Baseline) -> Option<Stan
         match (effect.id, effect.hidden) {
             // Off, as is stated for such points: it changes nothing.
             (EffectId::AntiIceBleed, _) if plain.anti_ice == Some(0.0) => {}
-            (EffectId::WaveDrag, HiddenParameter::DragDivergenceMach(divergence_mach)) => {
+            (
+                EffectId::WaveDrag,
+                HiddenParameter::DragRise(DragRise { divergence_mach, law: DragRiseLaw::Lock }),
+            ) => {
                 let step = 0.5 * baseline.references().typical_size(effect.id);
                 rises.push(Rise {
                     divergence_mach,

@@ -328,7 +328,7 @@ impl<'a> PreparedFlights<'a> {
     }
 
     /// Where N2 is recorded but indicates no thrust near the predicted one: how often.
-    pub(crate) fn thrust_by_n2_note(&self, library: &Library) -> Option<Note> {
+    fn thrust_by_n2_note(&self, library: &Library) -> Option<Note> {
         let recorded = self.segments.iter().filter(|row| row.n2_percent.is_some()).count();
         let silent = |row: &&SegmentRow| {
             row.n2_percent.is_some() && row.point.corrected_thrust_by_n2_n.is_none()
@@ -340,11 +340,29 @@ impl<'a> PreparedFlights<'a> {
     }
 
     /// Where it is not recorded whether bleed is on, and its effect is looked for.
-    pub(crate) fn anti_ice_note(&self, library: &Library) -> Option<Note> {
+    fn anti_ice_note(&self, library: &Library) -> Option<Note> {
         let of_segments = self.segments.len();
         let segments = self.segments.iter().filter(|row| row.point.anti_ice.is_none()).count();
         let looked_for = library.effects.iter().any(|e| e.id == EffectId::AntiIceBleed);
         (looked_for && segments > 0).then_some(Note::AntiIceByTemperature { segments, of_segments })
+    }
+
+    /// What is to be known of what the segments recorded, and of where they lie.
+    pub(crate) fn notes(
+        &self,
+        library: &Library,
+        baseline: Option<&Baseline>,
+    ) -> impl Iterator<Item = Note> {
+        let beyond = baseline.and_then(|baseline| self.beyond_flights_note(baseline));
+        [self.thrust_by_n2_note(library), self.anti_ice_note(library), beyond].into_iter().flatten()
+    }
+
+    /// Where the flights that taught a baseline did not fly.
+    fn beyond_flights_note(&self, baseline: &Baseline) -> Option<Note> {
+        let of_segments = self.segments.len();
+        let is_beyond = |row: &&SegmentRow| baseline.is_beyond_flights(&row.response);
+        let segments = self.segments.iter().filter(is_beyond).count();
+        (segments > 0).then_some(Note::BeyondFlights { segments, of_segments })
     }
 
     /// Values that were recorded in a flight: channels of its segments, and gauges. A channel that is not recorded in a

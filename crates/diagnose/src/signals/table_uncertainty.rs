@@ -43,6 +43,17 @@ pub struct TableUncertainty {
     pivots: Vec<usize>,
     /// Variance of each node that the factor leaves out; none where it has all nodes.
     left: Vec<f64>,
+    /// Masses and levels of the guide that was believed, where they are known.
+    guide: Option<GuideStates>,
+}
+
+/// Masses and levels of a guide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuideStates {
+    /// Smallest and largest mass, kg.
+    pub masses_kg: (f64, f64),
+    /// Lowest and highest pressure altitude, m.
+    pub pressure_altitudes_m: (f64, f64),
 }
 
 /// Why numbers are not the uncertainty of a table.
@@ -95,6 +106,7 @@ impl TableUncertainty {
             missing_share: None,
             pivots: vec![],
             left: vec![],
+            guide: None,
         })
     }
 
@@ -196,6 +208,17 @@ impl TableUncertainty {
     #[must_use]
     pub fn of_book(self) -> Self {
         Self { origin: TableOrigin::Book, ..self }
+    }
+
+    /// The same of a guide of these masses and levels.
+    #[must_use]
+    pub fn with_guide(self, guide: Option<GuideStates>) -> Self {
+        Self { guide, ..self }
+    }
+
+    /// The guide's masses and levels, where they are known.
+    pub(crate) const fn guide(&self) -> Option<GuideStates> {
+        self.guide
     }
 
     /// Where it comes from.

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
+use flight::effect::{DragRise, EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 use flight::{FlightIdentity, MAXIMUM_ENGINES};
 use lut::surface::Basis;
 use units::{Angle, Mach, Mass, PressureAltitude};
@@ -55,7 +55,7 @@ fn hidden(effects: Effects) -> Effects {
     let step = HiddenParameter::Step { from_s, target: StepTarget::FuelFlow };
     effects
         .with_hidden(EffectId::TsfcThrottle, HiddenParameter::Throttle { pivot: 0.8, argument })
-        .with_hidden(EffectId::WaveDrag, HiddenParameter::DragDivergenceMach(0.86))
+        .with_hidden(EffectId::WaveDrag, HiddenParameter::DragRise(DragRise::by_lock(0.86)))
         .with_hidden(EffectId::StepChange, step)
 }
 

@@ -1,6 +1,8 @@
 //! A set of effects in the form of the files: names with sizes, then every hidden parameter, used or not.
 
-use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
+use flight::effect::{
+    DragRise, DragRiseLaw, EffectId, HiddenParameter, History, StepTarget, ThrottleArgument,
+};
 use serde::{Deserialize, Serialize};
 
 use super::Effects;
@@ -21,6 +23,9 @@ struct HiddenText {
     #[serde(default, skip_serializing_if = "is_corrected_thrust")]
     throttle_argument: ThrottleArgument,
     drag_divergence_mach: f64,
+    /// Not written where it is Lock's, as the argument above.
+    #[serde(default, skip_serializing_if = "is_by_lock")]
+    drag_rise: DragRiseLaw,
     step_from_s: f64,
     step_target: StepTarget,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -39,11 +44,19 @@ const fn is_corrected_thrust(argument: &ThrottleArgument) -> bool {
     matches!(argument, ThrottleArgument::CorrectedThrust)
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+const fn is_by_lock(law: &DragRiseLaw) -> bool {
+    matches!(law, DragRiseLaw::Lock)
+}
+
 impl HiddenText {
     fn put(&mut self, id: EffectId, hidden: HiddenParameter) {
         match hidden {
             HiddenParameter::None => {}
-            HiddenParameter::DragDivergenceMach(mach) => self.drag_divergence_mach = mach,
+            HiddenParameter::DragRise(rise) => {
+                self.drag_divergence_mach = rise.divergence_mach;
+                self.drag_rise = rise.law;
+            }
             HiddenParameter::Throttle { pivot, argument } => {
                 self.throttle_pivot = pivot;
                 self.throttle_argument = argument;
@@ -63,9 +76,10 @@ impl HiddenText {
     fn of_effect(&self, id: EffectId) -> HiddenParameter {
         match id.entry().hidden {
             HiddenParameter::None => HiddenParameter::None,
-            HiddenParameter::DragDivergenceMach(_) => {
-                HiddenParameter::DragDivergenceMach(self.drag_divergence_mach)
-            }
+            HiddenParameter::DragRise(_) => HiddenParameter::DragRise(DragRise {
+                divergence_mach: self.drag_divergence_mach,
+                law: self.drag_rise,
+            }),
             HiddenParameter::Throttle { .. } => HiddenParameter::Throttle {
                 pivot: self.throttle_pivot,
                 argument: self.throttle_argument,
@@ -88,6 +102,7 @@ impl From<Effects> for EffectsText {
             throttle_pivot: 0.0,
             throttle_argument: ThrottleArgument::CorrectedThrust,
             drag_divergence_mach: 0.0,
+            drag_rise: DragRiseLaw::Lock,
             step_from_s: 0.0,
             step_target: StepTarget::FuelFlow,
             engine_history: None,
@@ -116,5 +131,50 @@ impl TryFrom<EffectsText> for Effects {
             effects = effects.with(id, size).with_hidden(id, hidden);
         }
         Ok(effects)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As files stated it before there was a choice.
+    #[test]
+    fn hidden_parameters_without_an_argument_are_over_corrected_thrust() {
+        let id = EffectId::TsfcThrottle;
+        let before = r#"(sizes:[("tsfc_throttle",0.6)],hidden:(throttle_pivot:0.8,drag_divergence_mach:0.84,step_from_s:inf,step_target:fuel_flow))"#;
+        let read: Effects = ron::from_str(before).unwrap();
+        let argument = ThrottleArgument::CorrectedThrust;
+        assert_eq!(read.hidden(id), HiddenParameter::Throttle { pivot: 0.8, argument });
+        assert_eq!(ron::to_string(&read).unwrap(), before);
+        // And it is written as before; N2 is written explicitly.
+        let argument = ThrottleArgument::N2;
+        let by_n2 = read.with_hidden(id, HiddenParameter::Throttle { pivot: 0.8, argument });
+        let text = ron::to_string(&by_n2).unwrap();
+        assert!(text.contains("throttle_argument:n2"), "{text}");
+        assert_eq!(ron::from_str::<Effects>(&text).unwrap(), by_n2);
+        // So with the law of a drag rise.
+        let rise = DragRise { divergence_mach: 0.86, law: DragRiseLaw::Steep };
+        let wave = EffectId::WaveDrag;
+        let steep = Effects::one(wave, 0.008).with_hidden(wave, HiddenParameter::DragRise(rise));
+        let text = ron::to_string(&steep).unwrap();
+        assert!(text.contains("drag_rise:steep"), "{text}");
+        assert_eq!(ron::from_str::<Effects>(&text).unwrap(), steep);
+    }
+
+    /// Engines and airframe have a history each; both come back from a file as they were.
+    #[test]
+    fn histories_are_read_back_as_they_were_written() {
+        let history = |recovered: f64| {
+            HiddenParameter::History(History::new(1.4e9, recovered, &[1.45e9]).unwrap())
+        };
+        let (engine, airframe) = (EffectId::EngineHistory, EffectId::AirframeHistory);
+        let of_engine = Effects::one(engine, 1.5).with_hidden(engine, history(0.3));
+        let both = of_engine.clone().with(airframe, 0.5).with_hidden(airframe, history(0.9));
+        for effects in [of_engine, both] {
+            let text = ron::to_string(&effects).unwrap();
+            assert_eq!(ron::from_str::<Effects>(&text).unwrap(), effects, "{text}");
+            assert_eq!(effects.hidden(engine), history(0.3));
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Effects of the airframe's drag.
 
 use super::{
-    DrivingVariable, EffectEntry, EffectGroup, EffectSign, HiddenParameter, History, NeededInput,
-    Phrase, TypicalSize,
+    DragRise, DrivingVariable, EffectEntry, EffectGroup, EffectSign, HiddenParameter, History,
+    NeededInput, Phrase, TypicalSize,
 };
 
 /// Drag-divergence Mach number at lift coefficient 0.35 where neither aircraft file nor search gives one: our choice,
@@ -69,7 +69,7 @@ pub(super) const WAVE_DRAG: EffectEntry = EffectEntry {
     typical: TypicalSize::Absolute(0.006),
     sign: EffectSign::Either,
     needs: &[],
-    hidden: HiddenParameter::DragDivergenceMach(DRAG_DIVERGENCE_MACH),
+    hidden: HiddenParameter::DragRise(DragRise::by_lock(DRAG_DIVERGENCE_MACH)),
     driven_by: &[DrivingVariable::Mach],
     perturbation: "CD + w(M, Mdd − θ) − w(M, Mdd), w = 20 max(0, M − Mdd + 0.1077)⁴",
     phrase: Phrase {

@@ -41,14 +41,34 @@ pub enum ThrottleArgument {
     N2,
 }
 
+/// How steeply drag rises with Mach number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DragRiseLaw {
+    /// Lock's fourth power, which begins a tenth in Mach number below drag divergence.
+    #[default]
+    Lock,
+    /// Three times as steep, as on supercritical wings, and earlier with lift, as on swept ones.
+    Steep,
+}
+
+/// A rise of drag with Mach number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DragRise {
+    /// Drag-divergence Mach number at lift coefficient 0.35.
+    pub divergence_mach: f64,
+    /// How steeply.
+    pub law: DragRiseLaw,
+}
+
 /// The hidden parameter of an effect, in addition to its size. Its kind and its default are in
 /// [`EffectEntry::hidden`](super::EffectEntry::hidden).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HiddenParameter {
     /// No parameter other than the size.
     None,
-    /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
-    DragDivergenceMach(f64),
+    /// `wave_drag`: the rise that comes earlier.
+    DragRise(DragRise),
     /// `tsfc_throttle`.
     Throttle {
         /// Corrected thrust over its reference at which TSFC is unchanged.
@@ -109,6 +129,14 @@ impl ThrottleArgument {
     }
 }
 
+impl DragRise {
+    /// By Lock's law.
+    #[must_use]
+    pub const fn by_lock(divergence_mach: f64) -> Self {
+        Self { divergence_mach, law: DragRiseLaw::Lock }
+    }
+}
+
 impl HiddenParameter {
     /// Whether this is a value of the same parameter.
     #[must_use]
@@ -116,7 +144,7 @@ impl HiddenParameter {
         matches!(
             (self, other),
             (Self::None, Self::None)
-                | (Self::DragDivergenceMach(_), Self::DragDivergenceMach(_))
+                | (Self::DragRise(_), Self::DragRise(_))
                 | (Self::Throttle { .. }, Self::Throttle { .. })
                 | (Self::Step { .. }, Self::Step { .. })
                 | (Self::History(_), Self::History(_))
@@ -130,7 +158,12 @@ impl fmt::Display for HiddenParameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => Ok(()),
-            Self::DragDivergenceMach(mach) => write!(f, "Mdd {mach}"),
+            Self::DragRise(DragRise { divergence_mach, law: DragRiseLaw::Lock }) => {
+                write!(f, "Mdd {divergence_mach}")
+            }
+            Self::DragRise(DragRise { divergence_mach, law: DragRiseLaw::Steep }) => {
+                write!(f, "steep, Mdd {divergence_mach}")
+            }
             Self::Throttle { pivot, argument } => {
                 write!(f, "over {}, pivot {pivot:.1}", argument.words())
             }

@@ -9,7 +9,7 @@ use pipeline::monitoring::{
 use super::{day, figure};
 use crate::text::{counted, signed, signed_tenths};
 
-/// Whether the tail burns more or less than its initial model predicts.
+/// Whether the tail burns more or less than its book says.
 fn burns_otherwise(tail: &TailDocument) -> bool {
     differs_from_zero(&tail.deviation_percent)
 }
@@ -52,13 +52,13 @@ pub(super) fn found(tail: &TailDocument) -> String {
     let level = &tail.deviation_percent;
     let level = if burns_otherwise(tail) {
         format!(
-            "Burns {} % {} than its initial model predicts (level {})",
+            "Burns {} % {} than its book says (level {})",
             size(&of_predicted(level)),
             more_or_less(level.value),
             figure(level)
         )
     } else {
-        format!("Burns what its initial model predicts ({} %)", figure(&of_predicted(level)))
+        format!("Burns what its book says ({} %)", figure(&of_predicted(level)))
     };
     let Some(trend) = &tail.trend_percent_per_year.as_ref().map(of_predicted) else {
         return format!("{level}; the flights are too few to show a trend.");
@@ -83,6 +83,23 @@ pub(super) fn found(tail: &TailDocument) -> String {
     } else {
         format!("{level}; no trend stands out ({} % a year).", figure(trend))
     }
+}
+
+/// Changes that an event explains: they are part of the level and of no trend.
+pub(super) fn explained(tail: &TailDocument) -> Option<String> {
+    let of = |change: &ChangeDocument| {
+        let event = change.event_in_words()?;
+        let engine = change.engine.map_or_else(String::new, |engine| format!("engine {engine} "));
+        let step = figure(&of_predicted(&change.step_percent));
+        Some(format!("{engine}{step} % since {}, with the event {event}", day(&change.since)))
+    };
+    let changes: Vec<String> = tail
+        .told_changes()
+        .into_iter()
+        .filter(|change| differs_from_zero(&change.step_percent))
+        .filter_map(of)
+        .collect();
+    (!changes.is_empty()).then(|| format!("Changed: {}.", changes.join("; ")))
 }
 
 /// What of it all tails of the type have: an aircraft is not sent to a hangar for what its model lacks.
@@ -146,9 +163,15 @@ fn drift(tail: &TailDocument) -> Option<String> {
             day(&step.until)
         ));
     }
+    let rises = |change: &&ChangeDocument| change.step_percent.ci95[0] > 0.0;
+    let told = tail.told_changes();
+    let beside = newest(told.into_iter().filter(rises)).map_or_else(String::new, |change| {
+        format!(", beside the change of {}", day(&change.since))
+    });
     tail.trend_percent_per_year.is_some_and(|trend| trend.ci95[0] > 0.0).then(|| {
-        "Wear, or dirt on engines or airframe: cruisefit diagnose says which of them fits the flights."
-            .to_owned()
+        format!(
+            "Wear, or dirt on engines or airframe{beside}: cruisefit diagnose says which of them fits the flights."
+        )
     })
 }
 
@@ -267,7 +290,7 @@ mod tests {
         let tail = tail((0.1, 0.3), (-1.0, 2.0), &serde_json::json!([]));
         assert_eq!(
             found(&tail),
-            "Burns what its initial model predicts (+0.10 ± 0.30 %); no trend stands out (-1.00 ± 2.00 % a year)."
+            "Burns what its book says (+0.10 ± 0.30 %); no trend stands out (-1.00 ± 2.00 % a year)."
         );
         assert_eq!(advice(&tail, &alone(&tail, &[])), ["Nothing to do."]);
     }
@@ -297,9 +320,8 @@ mod tests {
     fn what_is_said_is_per_cent_of_what_is_predicted() {
         let tail = tail((9.61, 0.71), (0.0, 1.0), &serde_json::json!([]));
         assert!(
-            found(&tail).starts_with(
-                "Burns 10.09 ± 0.78 % more than its initial model predicts (level +9.61 ± 0.71);"
-            ),
+            found(&tail)
+                .starts_with("Burns 10.09 ± 0.78 % more than its book says (level +9.61 ± 0.71);"),
             "{}",
             found(&tail)
         );
@@ -333,7 +355,7 @@ mod tests {
         let tail = tail((1.2, 0.2), (0.5, 0.1), &serde_json::json!(changes));
         assert_eq!(
             found(&tail),
-            "Burns 1.21 ± 0.20 % more than its initial model predicts (level +1.20 ± 0.20), and 0.50 ± 0.10 % more each year."
+            "Burns 1.21 ± 0.20 % more than its book says (level +1.20 ± 0.20), and 0.50 ± 0.10 % more each year."
         );
         let told = advice(&tail, &alone(&tail, &[]));
         assert_eq!(told.len(), 4, "{told:?}");

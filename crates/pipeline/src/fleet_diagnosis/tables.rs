@@ -33,8 +33,13 @@ pub fn fleet_table(fleets: &[DiagnosedFleet]) -> Columns {
     columns.text("effect", rows.iter().map(|row| row.2.to_string()));
     columns.text("unit", rows.iter().map(|row| row.2.entry().unit.to_owned()));
     columns.number("size", rows.iter().map(|row| Some(row.3.value)));
-    columns.number("size_ci95_low", rows.iter().map(|row| Some(row.3.ci95[0])));
-    columns.number("size_ci95_high", rows.iter().map(|row| Some(row.3.ci95[1])));
+    // No size was believed where both ends are one: that is no interval of anything.
+    let end = |row: &(_, _, _, diagnose::Magnitude, _), end: usize| {
+        let [low, high] = row.3.ci95;
+        (low < high).then(|| row.3.ci95[end])
+    };
+    columns.number("size_ci95_low", rows.iter().map(|row| end(row, 0)));
+    columns.number("size_ci95_high", rows.iter().map(|row| end(row, 1)));
     let level = |row: &(_, _, _, _, Option<&diagnose::FleetFinding>)| {
         row.4.map_or_else(String::new, |found| level_name(found.level).to_owned())
     };

@@ -164,7 +164,8 @@ fn table(fleet: &DiagnosedFleet) -> String {
     }
     let mut text = aligned(&rows);
     text.push_str(
-        "  ± is half a 95 % interval, * a finding; sizes of tails include that of the type.\n",
+        "  ± is half a 95 % interval, * a finding; sizes of tails include that of the type. 0 without an interval: none is \
+         believed, since the tails do not differ beyond what was found.\n",
     );
     text
 }
@@ -173,12 +174,15 @@ fn size(magnitude: &Magnitude) -> String {
     size_words(magnitude.value, magnitude.ci95)
 }
 
-/// A size with half of its 95 % interval: "+7.9 ± 1.2".
+/// A size with half of its 95 % interval: "+7.9 ± 1.2"; "0" where no size was believed, of which no flight says how sure that is.
 #[must_use]
 pub fn size_words(value: f64, ci95: [f64; 2]) -> String {
     let half = 0.5 * (ci95[1] - ci95[0]);
+    if half <= 0.0 {
+        return "0".to_owned();
+    }
     // Two digits of the interval.
-    let decimals = if half > 0.0 { (1.0 - half.log10().floor()).clamp(0.0, 6.0) } else { 2.0 };
+    let decimals = (1.0 - half.log10().floor()).clamp(0.0, 6.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 6")]
     let decimals = decimals as usize;
     format!("{value:+.decimals$} ± {half:.decimals$}")

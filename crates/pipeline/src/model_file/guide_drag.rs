@@ -6,6 +6,7 @@ use adapt::bayes::{BayesSettings, BayesState, Posterior, Search, SettingValues, 
 use flight::{Observation, ObservationVariance, Timestamp};
 use lut::{Outside, Table};
 use perf_model::initial::observe_guide_point;
+use perf_model::model::NODE_WEIGHT_THRESHOLD;
 use perf_model::{Guide, InitialModel, PerformanceModel};
 
 use super::GuideRecord;
@@ -17,7 +18,7 @@ use super::GuideRecord;
 /// ```
 ///
 /// Six coefficients cannot hold a drag rise: beside the polynomial, a guide's own rows may be several per cent off, and most where
-/// flights go beyond the Mach numbers that have been flown. Beyond the guide's range the nearest x within it holds.
+/// flights go beyond the Mach numbers that have been flown. At nodes that no row tells the nearest x within the guide's range holds.
 pub(super) fn with_drag_of_guide(
     initial: &InitialModel,
     guide: &Guide,
@@ -48,7 +49,8 @@ pub(super) fn with_drag_of_guide(
     for row in &rows {
         let _ = state.learn_flight(row);
     }
-    let table = table_within(&state.solve().ok()?, model.drag_table(), range)?;
+    let told = told_nodes(model.drag_table(), &rows);
+    let table = table_within(&state.solve().ok()?, model.drag_table(), (range, &told))?;
     model.with_drag_table(table).ok()
 }
 
@@ -64,16 +66,36 @@ const SEARCH: Search = Search {
 /// Degrees of freedom of rows that are printed and not measured: none is weighed down.
 const NO_OUTLIERS: f64 = 1e6;
 
-/// A table with the corrections of a posterior, beyond a guide's range those of its edge.
-fn table_within(posterior: &Posterior, initial: &Table, range: &GuideRecord) -> Option<Table> {
+/// Nodes of the cells that rows lie in: those that a row says something of.
+fn told_nodes(table: &Table, rows: &[Vec<Observation>]) -> Vec<bool> {
+    let grid = table.grid();
+    let mut told = vec![false; grid.nodes()];
+    for row in rows.iter().flatten() {
+        let Ok(cell) = grid.locate(row.lift_coefficient, row.mach, Outside::Error) else {
+            continue;
+        };
+        for (node, weight) in cell.nodes().into_iter().zip(cell.weights()) {
+            told[node] |= weight > NODE_WEIGHT_THRESHOLD;
+        }
+    }
+    told
+}
+
+/// A table with the corrections of a posterior, those of its edge beyond a guide's range where no row tells a node.
+fn table_within(
+    posterior: &Posterior,
+    initial: &Table,
+    (range, told): (&GuideRecord, &[bool]),
+) -> Option<Table> {
     let grid = initial.grid();
     let values = initial.values().iter().enumerate().map(|(node, drag_coefficient)| {
-        let (lift_coefficient, mach) = grid.coordinates(node);
-        let cell = grid.locate(
-            lift_coefficient.clamp(range.lift_coefficient.0, range.lift_coefficient.1),
-            mach.clamp(range.mach.0, range.mach.1),
-            Outside::Hold,
-        );
+        let (mut lift_coefficient, mut mach) = grid.coordinates(node);
+        if !told[node] {
+            lift_coefficient =
+                lift_coefficient.clamp(range.lift_coefficient.0, range.lift_coefficient.1);
+            mach = mach.clamp(range.mach.0, range.mach.1);
+        }
+        let cell = grid.locate(lift_coefficient, mach, Outside::Hold);
         Some(drag_coefficient * (1.0 + posterior.correction_at(&cell.ok()?)))
     });
     Table::new(Arc::clone(grid), values.collect::<Option<Vec<f64>>>()?).ok()

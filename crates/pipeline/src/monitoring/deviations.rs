@@ -4,7 +4,7 @@ use flight::{Segment, Timestamp};
 use monitor::CONDITIONS;
 
 use super::flights::{MeanConditions, MonitoredFlight, flights_of, flights_with, monitored};
-use crate::evaluation::{TailResult, evaluate, evaluate_model};
+use crate::evaluation::{BookEffects, TailResult, evaluate_book, evaluate_model};
 use crate::learning::{LearningCurve, LearningError, curve_of};
 use crate::model_file::ModelFile;
 use crate::whole_model::Predicts;
@@ -38,7 +38,7 @@ pub struct TailDeviations {
     pub flights: Vec<MonitoredFlight>,
     /// What they are normalised to: means over all segments of the tail inside the table.
     pub reference: MeanConditions,
-    /// What the learnt model predicts more than the initial one, mean over the same segments, %.
+    /// What the learnt model predicts more than the book, mean over the same segments, %.
     pub level_percent: f64,
     /// What they are normalised to, flight by flight: conditions as `monitor` has them, and segments inside the table.
     pub of_level: Vec<([f64; CONDITIONS], f64)>,
@@ -58,10 +58,10 @@ impl TailDeviations {
             BeforeLearning::Rebuild => curve_of(model, segments)?,
             BeforeLearning::LeaveOut => LearningCurve::new(),
         };
-        let initial = evaluate(&model.initial, model.initial.drag_table(), segments);
+        let book = evaluate_book(model, BookEffects::OfModel, segments);
         let learnt = evaluate_model(model, Predicts::WholeModel, segments);
         let aircraft = model.initial.aircraft();
-        let flights = monitored(segments.iter().zip(initial), &learnt, &curve, aircraft.engines());
+        let flights = monitored(segments.iter().zip(book), &learnt, &curve, aircraft.engines());
         Ok(Self::of_flights(aircraft.type_code(), &model.told(), flights))
     }
 
@@ -89,17 +89,17 @@ impl TailDeviations {
     /// The flights of a tail of this type, whose model has learnt so much in words.
     ///
     /// ```text
-    /// normalised d = 100·[ln Wf − ln Ŵf_learnt] + mean over all segments of 100·[ln Ŵf_learnt − ln Ŵf_initial]   [monitoring.16]
+    /// normalised d = 100·[ln Wf − ln Ŵf_learnt] + mean over all segments of 100·[ln Ŵf_learnt − ln Ŵf_book]   [monitoring.16]
     /// ```
     ///
-    /// The learnt model knows how fuel flow depends on conditions; the initial one is the level from which is counted.
+    /// The learnt model knows how fuel flow depends on conditions; the book is the level from which is counted.
     #[must_use]
     pub fn of_flights(aircraft_type: &str, model: &str, mut flights: Vec<MonitoredFlight>) -> Self {
         flights.sort_by(|one, other| (one.start, &one.flight).cmp(&(other.start, &other.flight)));
         let reference = MeanConditions::mean_of(flights.iter().map(|flight| flight.conditions));
         let over = flights
             .iter()
-            .map(|flight| flight.conditions.segments as f64 * flight.learnt_over_initial_percent);
+            .map(|flight| flight.conditions.segments as f64 * flight.learnt_over_book_percent);
         let conditions = flights.iter().map(|flight| flight.conditions);
         let of_level = conditions
             .filter(|conditions| conditions.segments > 0)

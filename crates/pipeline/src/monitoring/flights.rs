@@ -22,23 +22,23 @@ pub struct MonitoredFlight {
     pub segments: usize,
     /// Segments outside the table, which show nothing.
     pub outside_table: usize,
-    /// Against the initial model, at the conditions flown; `None` where no segment is inside the table, as for the others.
-    pub initial: Option<FlightDeviation>,
+    /// Against the book, at the conditions flown; `None` where no segment is inside the table, as for the others.
+    pub book: Option<FlightDeviation>,
     /// Against the learnt model.
     pub learnt: Option<FlightDeviation>,
     /// Against the model as it was before it learnt this flight.
     pub before_learning: Option<Forecast>,
     /// Of each engine that is recorded, against its share of the learnt model.
     pub engines: Vec<FlightDeviation>,
-    /// Mean of what the learnt model predicts more than the initial one over the flight's segments, %.
-    pub learnt_over_initial_percent: f64,
+    /// Mean of what the learnt model predicts more than the book over the flight's segments, %.
+    pub learnt_over_book_percent: f64,
     /// Fuel used from the beginning of the first segment to the end of the last one, kg.
     pub cruise_fuel_kg: f64,
     /// Conditions flown.
     pub conditions: MeanConditions,
 }
 
-/// Means over segments that both the initial and the learnt model predict, geometric where the quantity is positive by nature.
+/// Means over segments that both the book and the learnt model predict, geometric where the quantity is positive by nature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeanConditions {
     /// Mean pressure altitude, m.
@@ -51,7 +51,7 @@ pub struct MeanConditions {
     pub mass_kg: f64,
     /// Geometric mean of true airspeed, m/s.
     pub true_airspeed_m_s: f64,
-    /// Geometric mean of fuel flow by the initial model, kg/s.
+    /// Geometric mean of fuel flow by the book, kg/s.
     pub initial_fuel_flow_kg_s: f64,
     /// Segments.
     pub segments: usize,
@@ -105,7 +105,7 @@ impl MeanConditions {
 #[derive(Clone, Copy, Debug)]
 struct Shown<'s> {
     segment: &'s Segment,
-    initial: Option<f64>,
+    book: Option<f64>,
     learnt: Option<f64>,
 }
 
@@ -117,8 +117,8 @@ pub fn flights_of(result: &TailResult) -> Vec<MonitoredFlight> {
 
 /// The same with this learning curve.
 pub(super) fn flights_with(result: &TailResult, curve: &LearningCurve) -> Vec<MonitoredFlight> {
-    let initial = result.rows.iter().map(|row| (&row.segment, row.evaluated));
-    monitored(initial, &result.after, curve, result.model.initial.aircraft().engines())
+    let book = result.rows.iter().map(|row| &row.segment).zip(result.book.iter().copied());
+    monitored(book, &result.after, curve, result.model.initial.aircraft().engines())
 }
 
 /// The learning curve that flights hold.
@@ -130,21 +130,21 @@ pub fn curve_of_flights(flights: &[MonitoredFlight]) -> LearningCurve {
     flights.iter().filter_map(shown).collect()
 }
 
-/// The flights of these segments, with what the initial model and, in the same order, the learnt one predicts for each.
+/// The flights of these segments, with what the book and, in the same order, the learnt model predicts for each.
 pub(super) fn monitored<'s>(
-    initial: impl Iterator<Item = (&'s Segment, Option<Evaluated>)>,
+    book: impl Iterator<Item = (&'s Segment, Option<Evaluated>)>,
     learnt: &[Option<Evaluated>],
     curve: &LearningCurve,
     engines: usize,
 ) -> Vec<MonitoredFlight> {
-    let shown: Vec<Shown<'s>> = initial
+    let shown: Vec<Shown<'s>> = book
         .zip(learnt)
-        .map(|((segment, initial), learnt)| {
+        .map(|((segment, book), learnt)| {
             let deviation = |evaluated: Option<Evaluated>| {
                 let predicted = evaluated?.predicted_fuel_flow_kg_s?;
                 deviation_percent(segment.means.fuel_flow_total_kg_s, predicted)
             };
-            Shown { segment, initial: deviation(initial), learnt: deviation(*learnt) }
+            Shown { segment, book: deviation(book), learnt: deviation(*learnt) }
         })
         .collect();
     let flights: Vec<&[Shown<'s>]> =
@@ -168,17 +168,17 @@ fn flight_of(
         all(&|shown| Some(shown.learnt? + share_percent(shown.segment, engine, engines)?))
     });
     let inside = shown.iter().filter(|shown| shown.learnt.is_some()).count();
-    let over: Vec<f64> = shown.iter().filter_map(|one| Some(one.initial? - one.learnt?)).collect();
+    let over: Vec<f64> = shown.iter().filter_map(|one| Some(one.book? - one.learnt?)).collect();
     MonitoredFlight {
         flight: identity.flight.clone(),
         start: identity.start,
         segments: inside,
         outside_table: shown.len() - inside,
-        initial: all(&|shown| shown.initial),
+        book: all(&|shown| shown.book),
         learnt: all(&|shown| shown.learnt),
         before_learning: curve.get(&(identity.start, identity.flight.clone())).copied(),
         engines: by_engine.collect::<Option<Vec<_>>>().unwrap_or_default(),
-        learnt_over_initial_percent: over.iter().sum::<f64>() / over.len().max(1) as f64,
+        learnt_over_book_percent: over.iter().sum::<f64>() / over.len().max(1) as f64,
         cruise_fuel_kg: cruise_fuel_kg(shown, usual_step_s),
         conditions: MeanConditions::mean_of(shown.iter().filter_map(conditions)),
     }
@@ -233,7 +233,7 @@ fn step_s(from: (f64, f64), to: (f64, f64)) -> Option<f64> {
 
 /// Of one segment; `None` where a model does not predict it.
 fn conditions(shown: &Shown<'_>) -> Option<MeanConditions> {
-    let (initial, _) = (shown.initial?, shown.learnt?);
+    let (book, _) = (shown.book?, shown.learnt?);
     let means = &shown.segment.means;
     Some(MeanConditions {
         pressure_altitude_m: means.pressure_altitude_m,
@@ -241,7 +241,7 @@ fn conditions(shown: &Shown<'_>) -> Option<MeanConditions> {
         static_air_temperature_k: means.static_air_temperature_k,
         mass_kg: means.mass_kg,
         true_airspeed_m_s: means.true_airspeed_m_s,
-        initial_fuel_flow_kg_s: means.fuel_flow_total_kg_s * (-initial / 100.0).exp(),
+        initial_fuel_flow_kg_s: means.fuel_flow_total_kg_s * (-book / 100.0).exp(),
         segments: 1,
     })
 }

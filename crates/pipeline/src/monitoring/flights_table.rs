@@ -12,6 +12,8 @@ use crate::learning::Forecast;
 
 /// Columns before those of the engines.
 const COLUMNS: usize = 23;
+/// The first column of the deviation from the book, the fifth of all.
+const BOOK: &str = "book_percent";
 /// Columns of a deviation: mean, segments, sum of squared differences.
 const OF_A_DEVIATION: usize = 3;
 
@@ -23,7 +25,7 @@ pub fn flights_to_csv(flights: &[MonitoredFlight]) -> Vec<u8> {
     columns.text("start", flights.iter().map(|flight| flight.start.to_string()));
     columns.count("segments", flights.iter().map(|flight| flight.segments as u64));
     columns.count("outside_table", flights.iter().map(|flight| flight.outside_table as u64));
-    deviation(&mut columns, "initial", flights, |flight| flight.initial);
+    deviation(&mut columns, "book", flights, |flight| flight.book);
     deviation(&mut columns, "learnt", flights, |flight| flight.learnt);
     deviation(&mut columns, "before_learning", flights, |flight| {
         flight.before_learning.map(|forecast| forecast.deviation)
@@ -35,7 +37,7 @@ pub fn flights_to_csv(flights: &[MonitoredFlight]) -> Vec<u8> {
     let mut number = |name: &str, of: fn(&MonitoredFlight) -> f64| {
         columns.number(name, flights.iter().map(|flight| Some(of(flight))));
     };
-    number("learnt_over_initial_percent", |flight| flight.learnt_over_initial_percent);
+    number("learnt_over_book_percent", |flight| flight.learnt_over_book_percent);
     number("cruise_fuel_kg", |flight| flight.cruise_fuel_kg);
     number("pressure_altitude_m", |flight| flight.conditions.pressure_altitude_m);
     number("mach", |flight| flight.conditions.mach);
@@ -74,7 +76,15 @@ fn deviation(
 /// What a field holds that it cannot, with its line.
 pub fn read_flights(bytes: &[u8]) -> Result<Vec<MonitoredFlight>, String> {
     let mut reader = csv::ReaderBuilder::new().from_reader(bytes);
-    let columns = reader.headers().map_err(|error| error.to_string())?.len();
+    let header = reader.headers().map_err(|error| error.to_string())?;
+    let columns = header.len();
+    // Earlier programs counted from the polynomial through the guide's rows.
+    if header.get(4) != Some(BOOK) {
+        return Err(format!(
+            "found {:?}, expected a column {BOOK:?}",
+            header.get(4).unwrap_or_default()
+        ));
+    }
     let engines = columns.saturating_sub(COLUMNS) / OF_A_DEVIATION;
     if columns != COLUMNS + OF_A_DEVIATION * engines || engines > MAXIMUM_ENGINES {
         return Err(format!("found {columns} columns, expected {COLUMNS} and 3 for each engine"));
@@ -109,7 +119,7 @@ impl Row<'_> {
             start,
             segments: self.count(2)?,
             outside_table: self.count(3)?,
-            initial: self.deviation(4, start)?,
+            book: self.deviation(4, start)?,
             learnt: self.deviation(7, start)?,
             before_learning: match self.deviation(10, start)? {
                 Some(deviation) => {
@@ -118,7 +128,7 @@ impl Row<'_> {
                 None => None,
             },
             engines: own,
-            learnt_over_initial_percent: self.number(14)?,
+            learnt_over_book_percent: self.number(14)?,
             cruise_fuel_kg: self.number(15)?,
             conditions: MeanConditions {
                 pressure_altitude_m: self.number(16)?,
@@ -169,13 +179,13 @@ mod tests {
             start,
             segments: 3,
             outside_table: 1,
-            initial: shown(4.0),
+            book: shown(4.0),
             learnt: shown(0.1),
             before_learning: shown(6.0)
                 .filter(|_| engines > 0)
                 .map(|deviation| Forecast { deviation, mean_error_percent: 5.9 }),
             engines: (0..engines).filter_map(|engine| shown(engine as f64)).collect(),
-            learnt_over_initial_percent: 3.9,
+            learnt_over_book_percent: 3.9,
             cruise_fuel_kg: 1234.5,
             conditions: MeanConditions {
                 pressure_altitude_m: 11_000.0,

@@ -101,6 +101,12 @@ impl EngineSeries {
         changes.any(|change| change.event == Some(event))
     }
 
+    /// The first flights after changes of single engines, by their places among all.
+    fn steps(&self) -> impl Iterator<Item = usize> {
+        let changes = self.of_each.iter().flat_map(|history| &history.changes);
+        changes.map(|change| self.flights[change.first_flight])
+    }
+
     /// Which of its flights are among these of all.
     fn range(&self, of_all: &Range<usize>) -> Range<usize> {
         let place = |flight: usize| self.flights.partition_point(|known| *known < flight);
@@ -166,7 +172,9 @@ impl<'a> MonitoredTail<'a> {
             (event.time, if is_shown { Bearing::Likely } else { Bearing::Possible })
         };
         let bearings: Vec<_> = events.iter().enumerate().map(bearing).collect();
-        let Some(history) = History::fit_to_events(&series, &bearings, &beliefs) else {
+        // An engine that stepped by itself takes all of them along, by its share of the flow.
+        let steps: Vec<Timestamp> = engines.steps().map(|flight| flights[flight].start).collect();
+        let Some(history) = History::fit_with_steps(&series, &bearings, &steps, &beliefs) else {
             return Ok(None);
         };
         let known: Option<Vec<FlightDeviation>> =
@@ -240,7 +248,7 @@ impl<'a> MonitoredTail<'a> {
             let then = levels.level_percent(index, self.series().years(flight.start)).value;
             Some(FlownFlight {
                 conditions: flight.conditions.to_monitor(&self.reference),
-                deviation_percent: flight.initial?.deviation_percent() - (then - now),
+                deviation_percent: flight.book?.deviation_percent() - (then - now),
                 weight: self.history.weights[index],
             })
         };
@@ -439,7 +447,7 @@ impl<'a> MonitoredTail<'a> {
             segments: flight.segments,
             outside_table: flight.outside_table,
             deviation_percent: Estimate { value: percent, deviation: variance.sqrt() }.into(),
-            initial_deviation_percent: of(flight.initial).unwrap_or(percent),
+            initial_deviation_percent: of(flight.book).unwrap_or(percent),
             before_learning_percent: of(flight.before_learning.map(|known| known.deviation)),
             level_percent: self.history.levels.level_percent(index, years).into(),
             fuel_flow_kg_s: self.fuel_flow_kg_s(percent),

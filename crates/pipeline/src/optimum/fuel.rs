@@ -99,7 +99,7 @@ impl<'a> OptimumModel<'a> {
         };
         Ok(Self {
             own: model.current()?,
-            book: model.initial.drag_table().clone(),
+            book: model.held_against(Predicts::WholeModel).0.drag_table().clone(),
             learnt,
             informed_by_flights: model
                 .learnt

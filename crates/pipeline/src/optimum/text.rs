@@ -70,6 +70,7 @@ fn notes(conditions: &[ConditionOptimum], highest_ft: Option<f64>) -> String {
              `predict` states."
         );
     }
+    text.push_str(&unshown(all().filter_map(|(_, best)| best.saving_ci95)));
     let reasons: BTreeSet<NoSaving> = all().filter_map(|(_, best)| best.no_saving).collect();
     for reason in reasons {
         text.push_str(match reason {
@@ -86,6 +87,23 @@ fn notes(conditions: &[ConditionOptimum], highest_ft: Option<f64>) -> String {
     }
     text.push_str(&limits(all().map(|(_, best)| best.pressure_altitude_ft), highest_ft));
     text
+}
+
+/// How many savings the flights do not show. What an optimum is believed to save is more than it does, since it is where the model says
+/// least.
+fn unshown(savings: impl Iterator<Item = [f64; 2]>) -> String {
+    let (mut all, mut none) = (0, 0);
+    for [low, _] in savings {
+        all += 1;
+        none += usize::from(low <= 0.0);
+    }
+    if none == 0 {
+        return String::new();
+    }
+    format!(
+        "The intervals of {none} of {all} savings hold zero: these flights do not show that the tail's own choice is better there, and the \
+         book's is as good.\n"
+    )
 }
 
 /// What is asked for and has no optimum at any level, each with the reason.

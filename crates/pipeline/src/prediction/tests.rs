@@ -43,7 +43,7 @@ fn whole_and_segments() -> (ModelFile, Vec<Segment>) {
     let mut file = ModelFile::from_text(BAYES).unwrap();
     let segments = segments();
     let learnt = file.learnt.as_mut().unwrap();
-    crate::learning::remember_remainder(&file.initial, learnt, &segments);
+    crate::learning::remember_remainder((&file.initial, None), learnt, &segments);
     assert!(learnt.baseline.is_some());
     (file, segments)
 }
@@ -58,7 +58,7 @@ fn whole_where(stated: &str, instead: &str) -> ModelFile {
     let mut file = ModelFile::from_initial(&initial, &guide);
     let law = LawChoice::Bayes(file.settings.bayes);
     let mut learnt = begin(&file.initial, "SIM-01", TrimCriteria::PRESETS[0], law).unwrap();
-    crate::learning::remember_remainder(&file.initial, &mut learnt, &segments());
+    crate::learning::remember_remainder((&file.initial, None), &mut learnt, &segments());
     assert!(learnt.baseline.is_some());
     file.learnt = Some(learnt);
     file

@@ -29,7 +29,8 @@ impl Converter {
         let flight = recording.flight().to_owned();
         let (parts, longest_s) = parts(plan, &recording);
         if parts.is_empty() {
-            return MappedReport::WithoutCruise { flight, rows, longest_s };
+            let lacking = self.layout.lacking(&recording).map(Box::new);
+            return MappedReport::WithoutCruise { flight, rows, longest_s, lacking };
         }
         match derive::report(&self.layout, &recording, &parts) {
             Ok((report, None)) => MappedReport::Report(Box::new(report)),

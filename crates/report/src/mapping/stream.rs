@@ -55,6 +55,8 @@ pub enum MappedReport {
         rows: usize,
         /// Duration of its longest level part, s.
         longest_s: f64,
+        /// Where most of its rows lack a number, the first of them.
+        lacking: Option<Box<Refusal>>,
     },
     /// The flight cannot be used.
     Refused {
@@ -73,6 +75,7 @@ struct Tally {
     refused: Vec<String>,
     first_refusal: Option<Refusal>,
     longest_s: f64,
+    lacking: Option<Refusal>,
 }
 
 impl Stream {
@@ -167,9 +170,10 @@ impl Stream {
     pub fn dropped(&self, report: &MappedReport) -> Option<(String, Refusal)> {
         match report {
             MappedReport::Report(_) | MappedReport::Points(_) => None,
-            MappedReport::WithoutCruise { flight, rows, longest_s } => {
-                let refusal = self.refuse_without_level_part(*rows, *longest_s);
-                Some((flight.clone(), refusal))
+            MappedReport::WithoutCruise { flight, rows, longest_s, lacking } => {
+                let refusal = lacking.as_deref().cloned();
+                let without = || self.refuse_without_level_part(*rows, *longest_s);
+                Some((flight.clone(), refusal.unwrap_or_else(without)))
             }
             MappedReport::Refused { flight, refusal } => {
                 Some((flight.clone(), refusal.as_ref().clone()))
@@ -198,8 +202,9 @@ impl Stream {
                 let kind = RefusalKind::PointsForSamples;
                 return Err(Refusal { line, column: 1, found, kind });
             }
-            MappedReport::WithoutCruise { flight, longest_s, .. } => {
+            MappedReport::WithoutCruise { flight, longest_s, lacking, .. } => {
                 self.tally.longest_s = self.tally.longest_s.max(longest_s);
+                self.tally.lacking = self.tally.lacking.take().or(lacking.map(|lacking| *lacking));
                 self.tally.without_cruise.push(flight);
             }
             // One flight that cannot be used costs itself.
@@ -220,14 +225,10 @@ impl Stream {
     /// [`Refusal`] for a recording that gave no report.
     pub fn end(self) -> Result<Vec<Finding>, Refusal> {
         if self.tally.reports == 0 {
-            return Err(
-                match self.assembly.most_are_bad().or_else(|| self.tally.first_refusal.clone()) {
-                    Some(refusal) => refusal,
-                    None => {
-                        self.refuse_without_level_part(self.assembly.longest, self.tally.longest_s)
-                    }
-                },
-            );
+            let Tally { first_refusal, lacking, longest_s, .. } = &self.tally;
+            let known = self.assembly.most_are_bad().or_else(|| first_refusal.clone());
+            let without = || self.refuse_without_level_part(self.assembly.longest, *longest_s);
+            return Err(known.or_else(|| lacking.clone()).unwrap_or_else(without));
         }
         let finding =
             |code, message| Finding { severity: Severity::Warning, code, message, line: None };

@@ -90,6 +90,7 @@ impl RefusalKind {
             Self::SourceColumnDoubled { .. } => "source-column-doubled",
             Self::SourceTextMissing { .. } => "source-text-missing",
             Self::SourceNotANumber { .. } => "source-not-a-number",
+            Self::SourceColumnEmpty { .. } => "source-column-empty",
             Self::SourceInstantMalformed => "source-instant-malformed",
             Self::GrossMassRises { .. } => "gross-mass-rises",
             Self::GrossMassJumps { .. } => "gross-mass-jumps",
@@ -169,6 +170,7 @@ impl fmt::Display for RefusalKind {
             Self::SourceColumnDoubled { name } => write!(f, "one column named {name:?}"),
             Self::SourceTextMissing { key } => write!(f, "text for {key}"),
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
+            Self::SourceColumnEmpty { name } => write_lacking(f, name),
             Self::SourceInstantMalformed => f.write_str(INSTANT),
             Self::GrossMassRises { smallest_kg, admissible_rise_kg, gap_s } => {
                 write_mass_rise(f, *smallest_kg, *admissible_rise_kg, *gap_s)
@@ -221,6 +223,10 @@ fn write_mass_rise(
 
 fn write_column_named(f: &mut fmt::Formatter<'_>, name: &str, hint: &str) -> fmt::Result {
     write!(f, "a column named {name:?}{hint}")
+}
+
+fn write_lacking(f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
+    write!(f, "every number that the report needs; most of these rows lack one in {name:?}")
 }
 
 fn write_fuel_fall(

@@ -20,6 +20,23 @@ struct DiagnosisFile {
 struct TailDiagnosis {
     tail: String,
     verdict: Verdict,
+    compared: Compared,
+}
+
+#[derive(Debug, Deserialize)]
+struct Compared {
+    #[serde(default)]
+    flights_learnt: usize,
+    /// The tail that they were of, where it is another.
+    #[serde(default)]
+    learnt_tail: Option<String>,
+}
+
+impl Compared {
+    /// Whether the model had learnt the tail itself: it does not see what it learnt, and so not what the tail burns beyond its book.
+    const fn is_own(&self) -> bool {
+        self.flights_learnt > 0 && self.learnt_tail.is_none()
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -32,6 +49,11 @@ struct Verdict {
     #[serde(default)]
     probability: f64,
 }
+
+/// The rule that looks at what a tail burns beyond its book.
+const DEVIATION: &str = "deviation=";
+/// Why a diagnosis against what a tail has learnt says nothing of what it burns beyond its book.
+const OF_OWN_MODEL: &str = "the newest diagnosis is against the tail's own model, which has learnt what it burns beyond its book";
 
 /// The diagnoses of a file.
 #[derive(Debug)]
@@ -52,16 +74,19 @@ impl Causes {
     /// Puts the likely causes of its tail into an alert: the class of effects that the diagnosis names, the named ones first,
     /// where it advises to act on one; else why it names none.
     pub(crate) fn explain(&self, alert: &mut AlertDocument) {
-        match self.of_tail(&alert.tail) {
+        match self.of_alert(alert) {
             Ok(causes) => alert.likely_causes = causes,
             Err(reason) => alert.no_likely_cause = Some(reason),
         }
     }
 
-    fn of_tail(&self, tail: &str) -> Result<Vec<String>, String> {
-        let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == tail) else {
+    fn of_alert(&self, alert: &AlertDocument) -> Result<Vec<String>, String> {
+        let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == alert.tail) else {
             return Err("this tail was not diagnosed".to_owned());
         };
+        if alert.rule.starts_with(DEVIATION) && found.compared.is_own() {
+            return Err(OF_OWN_MODEL.to_owned());
+        }
         let verdict = &found.verdict;
         match verdict.kind {
             VerdictKind::Effects if stands_out(verdict.probability) => {
@@ -77,7 +102,6 @@ impl Causes {
                 "{NO_CAUSE_STANDS_OUT}, the most probable has {:.2}",
                 verdict.probability
             )),
-            // It may have been of another model, one that has learnt the deviation.
             VerdictKind::NoGap => Err("no gap is seen by the model that was diagnosed".to_owned()),
             VerdictKind::OutsideLibrary => {
                 Err("no effect of the library explains the gap".to_owned())

@@ -176,9 +176,9 @@ fn since(hidden: HiddenParameter) -> Option<String> {
     let since_s = match hidden {
         HiddenParameter::Step { from_s, .. } => from_s,
         HiddenParameter::History(history) => history.falls_s().last().unwrap_or(history.since_s()),
-        HiddenParameter::None
-        | HiddenParameter::DragDivergenceMach(_)
-        | HiddenParameter::Throttle { .. } => return None,
+        HiddenParameter::None | HiddenParameter::DragRise(_) | HiddenParameter::Throttle { .. } => {
+            return None;
+        }
     };
     Some(instant_words(since_s)).filter(|instant| !instant.is_empty())
 }
@@ -285,7 +285,7 @@ fn names(effects: &[EffectId]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use flight::effect::{History, StepTarget, ThrottleArgument};
+    use flight::effect::{DragRise, History, StepTarget, ThrottleArgument};
 
     use super::*;
 
@@ -303,7 +303,7 @@ mod tests {
         let argument = ThrottleArgument::N2;
         for undated in [
             HiddenParameter::None,
-            HiddenParameter::DragDivergenceMach(0.86),
+            HiddenParameter::DragRise(DragRise::by_lock(0.86)),
             HiddenParameter::Throttle { pivot: 1.0, argument },
         ] {
             assert_eq!(since(undated), None);

@@ -90,13 +90,15 @@ impl Part<'_> {
         Ok(Some(GrossMasses { masses, zero_fuel_mass, largest_rise_kg, impossible }))
     }
 
-    /// Zero-fuel mass where gross mass and the contents of the tanks are recorded, at the report's first row.
+    /// Zero-fuel mass where gross mass and the contents of the tanks are recorded: the difference in the first row that has both.
     pub(super) fn zero_fuel_mass_by_gauges(&self, masses: &Series) -> Option<Mass> {
         let is_quantity = |(column, _): &&(Column, _)| *column == Column::FuelQuantity;
         let (_, quantity) = self.plan.recorded.iter().find(is_quantity)?;
-        let quantity_kg = quantity.apply(&self.recording.numbers, self.rows.at(0));
-        let zero_fuel_kg = masses.values.first()? - quantity_kg;
-        (zero_fuel_kg > 0.0).then(|| Mass::kilograms(zero_fuel_kg))
+        let rows = self.rows.runs().flatten().zip(&masses.values);
+        let mut zero_fuel_kg =
+            rows.map(|(row, mass_kg)| mass_kg - quantity.apply(&self.recording.numbers, row));
+        let first_kg = zero_fuel_kg.find(|zero_fuel_kg| zero_fuel_kg.is_finite())?;
+        (first_kg > 0.0).then(|| Mass::kilograms(first_kg))
     }
 }
 

@@ -75,6 +75,19 @@ impl Layout {
         self.refuse_field((line, &recording.line(line)), self.fields.time, found, kind)
     }
 
+    /// Where most rows of a recording lack a number that the report needs: the first of those, at the column that most of them lack.
+    pub(in crate::mapping) fn lacking(&self, recording: &Recording) -> Option<Refusal> {
+        let name = recording.lacking.as_ref()?;
+        let input = self.plan.inputs.iter().position(|input| input.name == *name)?;
+        let line = recording.first_left_out?;
+        let kind = RefusalKind::SourceColumnEmpty { name: name.clone() };
+        let found = Found::Rows(recording.left_out);
+        let refusal = || {
+            self.refuse_field((line, &recording.line(line)), self.fields.inputs[input], found, kind)
+        };
+        (recording.left_out > recording.time_s.len()).then(refusal)
+    }
+
     /// Whether a column tells the tails.
     pub(super) const fn tells_tails(&self) -> bool {
         matches!(self.fields.texts[1].1, Text::Field(_))

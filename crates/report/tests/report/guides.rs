@@ -4,8 +4,8 @@
 
 use report::{Mapping, Reader, TextLayout, mapping, write};
 
-const FORMAT: &str = include_str!("../../../docs/src/guides/cruise_report_format.md");
-const MAPPING: &str = include_str!("../../../docs/src/guides/mapping.md");
+const FORMAT: &str = include_str!("../../../../docs/src/guides/cruise_report_format.md");
+const MAPPING: &str = include_str!("../../../../docs/src/guides/mapping.md");
 
 /// The fenced blocks of a language in a page.
 fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {

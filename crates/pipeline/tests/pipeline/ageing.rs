@@ -18,7 +18,7 @@ fn left_of_more(flights: &[Vec<Segment>], half_life_days: Option<f64>) -> f64 {
     let values = SettingValues { half_life_days, ..*BayesSettings::physical_2026().values() };
     let law = LawChoice::Bayes(BayesSettings::new(values).unwrap());
     let mut learnt = begin(&initial, "V-01", "standard", law).unwrap();
-    remember_remainder(&initial, &mut learnt, &teaching.concat());
+    remember_remainder((&initial, None), &mut learnt, &teaching.concat());
     let whole = WholeModel::new(&initial, learnt.baseline.as_ref().unwrap()).unwrap();
     let judging = judging.concat();
     let gap = |segment: &Segment| {

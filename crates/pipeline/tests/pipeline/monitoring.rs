@@ -187,11 +187,11 @@ fn flight(start: &str, percent: f64, engines: Option<[f64; 2]>) -> MonitoredFlig
         start,
         segments: 5,
         outside_table: 0,
-        initial: shown(percent),
+        book: shown(percent),
         learnt: shown(percent),
         before_learning: None,
         engines: engines.into_iter().flatten().filter_map(shown).collect(),
-        learnt_over_initial_percent: 0.0,
+        learnt_over_book_percent: 0.0,
         cruise_fuel_kg: 1000.0,
         conditions: MeanConditions { segments: 5, ..MeanConditions::default() },
     }
@@ -293,8 +293,8 @@ fn of_network(name: &str, mach: f64, more: f64) -> (TailDocument, FlownCondition
         let start = format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 28, 1 + k % 28);
         let shown = flight(&start, scatter(k), None);
         MonitoredFlight {
-            initial: shown.learnt.map(|learnt| learnt.raised(error)),
-            learnt_over_initial_percent: error,
+            book: shown.learnt.map(|learnt| learnt.raised(error)),
+            learnt_over_book_percent: error,
             conditions: MeanConditions {
                 mach,
                 pressure_altitude_m: 10_500.0 + 100.0 * (k % 7) as f64,
@@ -422,8 +422,8 @@ fn a_window_does_not_move_the_level() {
         (0..40)
             .map(|k| {
                 let start = format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 20, 1 + k % 20);
-                let learnt_over_initial_percent = if k < 20 { 2.0 } else { 6.0 };
-                MonitoredFlight { learnt_over_initial_percent, ..flight(&start, scatter(k), None) }
+                let learnt_over_book_percent = if k < 20 { 2.0 } else { 6.0 };
+                MonitoredFlight { learnt_over_book_percent, ..flight(&start, scatter(k), None) }
             })
             .collect()
     };

@@ -51,12 +51,12 @@ fn an_independent_polynomial_comes_back_from_its_table() {
             .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>())
             .collect::<Vec<_>>()
     };
-    let points: Vec<_> = numbers(include_str!("golden/initial_wide_table.csv"))
+    let points: Vec<_> = numbers(include_str!("../golden/initial_wide_table.csv"))
         .iter()
         .map(|row| (row[0], row[1], row[2], 1.0))
         .collect();
     let fit = fit(Basis::SeparableQuadratic, &points).unwrap();
-    for row in numbers(include_str!("golden/initial_polynomial.csv")) {
+    for row in numbers(include_str!("../golden/initial_polynomial.csv")) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
         let ours = fit.surface.coefficients[row[0] as usize];
         assert!((ours - row[1]).abs() < 1e-10, "p{} {ours} for {}", row[0], row[1]);

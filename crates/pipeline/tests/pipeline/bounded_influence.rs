@@ -15,7 +15,7 @@ fn predicted(teaching: &[Vec<Segment>], judging: &[Segment]) -> Vec<WholePredict
     let initial = exact_model();
     let law = LawChoice::Bayes(BayesSettings::physical_2026());
     let mut learnt = begin(&initial, "V-01", "standard", law).unwrap();
-    remember_remainder(&initial, &mut learnt, &teaching.concat());
+    remember_remainder((&initial, None), &mut learnt, &teaching.concat());
     let baseline = learnt.baseline.as_ref().unwrap();
     let whole = WholeModel::new(&initial, baseline).unwrap();
     judging.iter().map(|segment| whole.of_segment(segment).unwrap()).collect()

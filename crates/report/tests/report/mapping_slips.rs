@@ -272,6 +272,18 @@ fn an_altitude_out_of_range_costs_its_row_and_no_level_part() {
     assert!(refusal.contains("expected ALT of"), "{refusal}");
 }
 
+/// A column that is there and empty is named, and not a level part that is not.
+#[test]
+fn an_empty_column_is_named() {
+    let text = climb_and_cruise(["600"; 9], [""; 9]);
+    for mapping in [mapping(SECONDS, GROSS, ""), mapping(SECONDS, GROSS, CRUISE)] {
+        assert_eq!(
+            refused(&mapping, &text),
+            "line 2, column 29: found 9 rows, expected every number that the report needs; most of these rows lack one in \"ff2\""
+        );
+    }
+}
+
 #[test]
 fn nan_is_no_number_in_text() {
     let text = cruise(&[(3, "NaN"), (50, "nan"), (51, "-9")]);

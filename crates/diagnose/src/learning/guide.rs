@@ -1,0 +1,263 @@
+//! What is learnt is held to the guide where nobody flew: a guide is some per cent off, and not by a sixth at the end of its range.
+//!
+//! Slopes that flights have shown go on beyond what was flown. Those of Mach number, lift coefficient, thrust and mass make up for each
+//! other as long as these rise and fall together, which they do among the flights and not beyond.
+
+use effects::{EffectModel, EffectPoint, Response, Variable};
+use faer::Mat;
+use lut::Outside;
+use perf_model::FlightPoint;
+use perf_model::model::NODE_WEIGHT_THRESHOLD;
+use units::convert::STANDARD_GRAVITY_M_S2;
+use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
+
+use crate::baseline::Baseline;
+use crate::learning::physical::{Mesh, force_n, mesh};
+use crate::math::cholesky::Cholesky;
+use crate::math::linear::{subtract_gram, symmetrize};
+use crate::priors::{GUIDE_SHAPE_DEVIATION, GUIDE_SHAPE_LIFT, GUIDE_SHAPE_MACH};
+use crate::residuals::rows::SegmentRow;
+use crate::residuals::segments::PreparedFlights;
+use crate::signals::table_uncertainty::{GuideStates, TableUncertainty};
+use crate::signals::variables::flown;
+use crate::thresholds::{MASSES_BEYOND, PHYSICAL_LIFT_STEP, PHYSICAL_MACH_STEP};
+
+/// Levels at which a state of the guide is asked, from its lowest to its highest: another level is another mass.
+const LEVELS: u32 = 8;
+/// Share of a state's variance that keeps the matrix of many near ones positive definite.
+const JITTER: f64 = 1e-3;
+
+/// How far what is learnt departs from the guide over the guide's range, less what it does at the mean of the flights: slopes along the
+/// coefficients, and how far they are believed to be from zero.
+///
+/// ```text
+/// g_i = f(CL_i, M_i) − f(CL̄, M̄) ~ N(0, C),   C = s²·exp(−½(ΔCL/0.1)² − ½(ΔM/0.03)²)                    [baseline.10]
+/// ```
+///
+/// f is the mean over the guide's levels at which its masses are flown: its drag table is one over its levels too. What the
+/// coefficients do not hold of f, where nothing was flown, is added to C: the smooth functions' processes, and the nodes' own.
+pub(super) struct Guide {
+    departures: Vec<Departure>,
+    width: usize,
+}
+
+impl Guide {
+    /// Of the range that a model's guide informs; nothing where its table is taken as exact.
+    pub(super) fn of(
+        model: &EffectModel<'_>,
+        baseline: &Baseline,
+        data: &PreparedFlights<'_>,
+        extrapolated: &[bool],
+    ) -> Self {
+        let departures = baseline.table.as_ref().map_or_else(Vec::new, |table| {
+            Departures::new(model, baseline, data, table).over_range(extrapolated)
+        });
+        Self { departures, width: baseline.layout().len() }
+    }
+
+    /// Holds coefficients, in units of these deviations, to it.
+    ///
+    /// ```text
+    /// S = AVAᵀ + C,   m ← m − VAᵀS⁻¹Am,   V ← V − VAᵀS⁻¹AV
+    /// ```
+    pub(super) fn hold(
+        &self,
+        baseline: &Baseline,
+        mean: &mut [f64],
+        covariance: &mut Mat<f64>,
+        deviations: &[f64],
+    ) {
+        let (count, width) = (self.departures.len(), self.width);
+        let rows = Mat::from_fn(count, width, |k, j| self.departures[k].slopes[j] * deviations[j]);
+        let mut spread = &rows * &*covariance;
+        let stated = &spread * rows.transpose() + self.covariance(baseline);
+        let Some(root) = Cholesky::new(&stated).filter(|_| count > 0) else { return };
+        let along = |k: usize| (0..width).map(|j| rows[(k, j)] * mean[j]).sum::<f64>();
+        let mut off = Mat::from_fn(count, 1, |k, _| -along(k));
+        root.solve(&mut off);
+        for (j, value) in mean.iter_mut().enumerate() {
+            *value += (0..count).map(|k| spread[(k, j)] * off[(k, 0)]).sum::<f64>();
+        }
+        root.solve_lower(&mut spread);
+        subtract_gram(covariance, &spread.transpose().to_owned());
+        symmetrize(covariance);
+    }
+
+    /// Of what is believed of departures, and of what no coefficient holds of them.
+    fn covariance(&self, baseline: &Baseline) -> Mat<f64> {
+        let growths: Vec<f64> =
+            (0..baseline.smooth_functions()).map(|k| baseline.growth_beyond(k)).collect();
+        Mat::from_fn(self.departures.len(), self.departures.len(), |a, b| {
+            let (one, other) = (&self.departures[a], &self.departures[b]);
+            let lengths = (one.place.0 - other.place.0) / GUIDE_SHAPE_LIFT;
+            let machs = (one.place.1 - other.place.1) / GUIDE_SHAPE_MACH;
+            let shape = (-0.5 * (lengths * lengths + machs * machs)).exp();
+            let own = if a == b { JITTER } else { 0.0 };
+            let unflown = unflown(&one.beyond, &other.beyond, &growths);
+            let of_node = if a == b { one.left } else { 0.0 };
+            GUIDE_SHAPE_DEVIATION.powi(2) * (shape + own) + unflown + of_node
+        })
+    }
+}
+
+/// Covariance of what no coefficient holds of the means of two states, each over its levels.
+fn unflown(some: &[Vec<f64>], others: &[Vec<f64>], growths: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for one in some {
+        for other in others {
+            for ((near, far), growth) in one.iter().zip(other).zip(growths) {
+                sum += growth * process(*near, *far);
+            }
+        }
+    }
+    sum / (some.len() * others.len()) as f64
+}
+
+/// Covariance of an integrated Wiener process at two signed distances, 1 at 1; none between its two sides.
+fn process(one: f64, other: f64) -> f64 {
+    if one * other <= 0.0 {
+        return 0.0;
+    }
+    let (near, far) =
+        if one.abs() < other.abs() { (one.abs(), other.abs()) } else { (other.abs(), one.abs()) };
+    0.5 * near * near * (3.0 * far - near)
+}
+
+/// A departure from the guide.
+struct Departure {
+    /// Lift coefficient and Mach number.
+    place: (f64, f64),
+    /// Along the coefficients.
+    slopes: Vec<f64>,
+    /// At each of the levels, how far each variable of the remainder lies beyond what was flown, signed lengths.
+    beyond: Vec<Vec<f64>>,
+    /// Variance of the table's nodes that no coefficient holds.
+    left: f64,
+}
+
+/// What departures from a guide are made from.
+struct Departures<'a, 'm> {
+    model: &'a EffectModel<'m>,
+    baseline: &'a Baseline,
+    states: Mesh<'a, 'm>,
+    guide: GuideStates,
+    isa_deviation: TemperatureDifference,
+    /// Mean lift coefficient and Mach number of the flights.
+    middle: (f64, f64),
+}
+
+impl<'a, 'm> Departures<'a, 'm> {
+    fn new(
+        model: &'a EffectModel<'m>,
+        baseline: &'a Baseline,
+        data: &'a PreparedFlights<'m>,
+        table: &TableUncertainty,
+    ) -> Self {
+        let values = |variable| {
+            let of = move |row: &SegmentRow| flown(variable, &row.response, baseline.references());
+            data.segments.iter().map(of)
+        };
+        let mean = |variable| values(variable).sum::<f64>() / data.segments.len().max(1) as f64;
+        let range = |variable| {
+            values(variable).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            })
+        };
+        let flown_states = || {
+            let (low, high) = range(Variable::Mass);
+            GuideStates {
+                masses_kg: (low * (1.0 - MASSES_BEYOND), high * (1.0 + MASSES_BEYOND)),
+                pressure_altitudes_m: range(Variable::PressureAltitude),
+            }
+        };
+        Self {
+            model,
+            baseline,
+            states: Mesh::new(model, baseline, data),
+            guide: table.guide().unwrap_or_else(flown_states),
+            isa_deviation: TemperatureDifference::kelvin(mean(Variable::IsaDeviation)),
+            middle: (mean(Variable::LiftCoefficient), mean(Variable::Mach)),
+        }
+    }
+
+    fn over_range(&self, extrapolated: &[bool]) -> Vec<Departure> {
+        let grid = self.model.drag_table().grid();
+        let Some(middle) = self.departure(self.middle) else { return Vec::new() };
+        let informs = |(lift, mach): &(f64, f64)| {
+            grid.locate(*lift, *mach, Outside::Error).is_ok_and(|cell| {
+                let parts = cell.nodes().into_iter().zip(cell.weights());
+                let mut parts = parts.filter(|(_, weight)| *weight > NODE_WEIGHT_THRESHOLD);
+                parts.all(|(node, _)| !extrapolated[node])
+            })
+        };
+        let machs = mesh(grid.y().first(), grid.y().last(), PHYSICAL_MACH_STEP);
+        let lifts = mesh(grid.x().first(), grid.x().last(), PHYSICAL_LIFT_STEP);
+        let places = lifts.iter().flat_map(|lift| machs.iter().map(|mach| (*lift, *mach)));
+        let of_place = |place: (f64, f64)| {
+            let mut found = self.departure(place)?;
+            for (here, there) in found.slopes.iter_mut().zip(&middle.slopes) {
+                *here -= there;
+            }
+            Some(found)
+        };
+        let departures = places.filter(informs).filter_map(of_place);
+        departures.filter(|departure| self.is_unflown(departure)).collect()
+    }
+
+    /// Whether Mach number, lift coefficient or thrust lies beyond what was flown: elsewhere flights say what the aircraft does.
+    fn is_unflown(&self, departure: &Departure) -> bool {
+        const OF_DRAG: [Variable; 3] =
+            [Variable::Mach, Variable::LiftCoefficient, Variable::CorrectedThrust];
+        let of_drag =
+            |function: usize| OF_DRAG.contains(&self.baseline.parts.smooth[function].variable());
+        let is_beyond = |distances: &Vec<f64>| {
+            let mut distances = distances.iter().enumerate();
+            distances.any(|(function, distance)| of_drag(function) && *distance != 0.0)
+        };
+        departure.beyond.iter().all(is_beyond)
+    }
+
+    /// Mean over the guide's levels; `None` where it has none there.
+    fn departure(&self, place: (f64, f64)) -> Option<Departure> {
+        let (lowest_m, highest_m) = self.guide.pressure_altitudes_m;
+        let level_m =
+            |k: u32| lowest_m + f64::from(k) / f64::from(LEVELS - 1) * (highest_m - lowest_m);
+        let at = |k: u32| self.states.slopes(&self.point(place, level_m(k))?);
+        let found: Vec<(Vec<f64>, Response)> = (0..LEVELS).filter_map(at).collect();
+        let (first, count) = (found.first()?, found.len() as f64);
+        let mut mean = Departure {
+            place,
+            slopes: vec![0.0; first.0.len()],
+            beyond: Vec::with_capacity(found.len()),
+            left: 0.0,
+        };
+        let table = self.baseline.table.as_ref();
+        for (slopes, response) in &found {
+            for (total, slope) in mean.slopes.iter_mut().zip(slopes) {
+                *total += slope / count;
+            }
+            mean.beyond.push(self.baseline.beyond(response).collect());
+            let square = response.drag_over_thrust * response.drag_over_thrust;
+            mean.left += table.map_or(0.0, |table| square * table.left_out(response)) / count;
+        }
+        Some(mean)
+    }
+
+    /// The point of a lift coefficient and a Mach number at this level, which is a mass; `None` beyond the guide's.
+    fn point(&self, (lift, mach): (f64, f64), level_m: f64) -> Option<EffectPoint> {
+        let aircraft = self.model.aircraft();
+        let altitude = PressureAltitude::meters(level_m);
+        let pressure_pa = atmos::isa::pressure(altitude).ok()?.to_pascals();
+        let area_m2 = aircraft.wing_area().to_square_meters();
+        let mass_kg = lift * force_n(pressure_pa, mach, area_m2) / STANDARD_GRAVITY_M_S2;
+        let (low_kg, high_kg) = self.guide.masses_kg;
+        if !(low_kg..=high_kg).contains(&mass_kg) {
+            return None;
+        }
+        let point = FlightPoint {
+            isa_deviation: self.isa_deviation,
+            ..FlightPoint::new(Mass::kilograms(mass_kg), altitude, Mach::new(mach))
+        };
+        EffectPoint::from_flight_point(&point, aircraft.engines()).ok()
+    }
+}

@@ -1,0 +1,70 @@
+//! What a guide predicts: the oracle is the guide itself, its rows flown as they are printed.
+
+#![expect(clippy::unwrap_used, reason = "fixtures are whole")]
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use flight::{Cruise, FlightIdentity, Segment, SegmentMeans};
+use perf_model::{Aircraft, Guide, initial_model};
+use pipeline::evaluation::{BookEffects, evaluate, evaluate_book};
+use pipeline::model_file::ModelFile;
+use pipeline::segments_table::Evaluated;
+
+const AIRCRAFT: &str = include_str!("../../../../fixtures/global5000/AIRCRAFT.ron");
+const GUIDE: &[u8] = include_bytes!("../../../../fixtures/global5000/guide.csv");
+
+/// A segment that burns what a row prints.
+fn flown(row: &perf_model::GuidePoint) -> Segment {
+    let isa = atmos::isa::temperature(row.pressure_altitude).unwrap();
+    let mach = atmos::airspeed::true_airspeed_to_mach(row.true_airspeed, isa);
+    let means = SegmentMeans::cruise(&Cruise {
+        pressure_altitude: row.pressure_altitude,
+        static_air_temperature: isa,
+        mach,
+        true_airspeed: row.true_airspeed,
+        mass: row.mass,
+        fuel_flow_total: row.fuel_flow_total,
+    });
+    let identity = FlightIdentity {
+        tail: "GUIDE".into(),
+        start: "2026-01-01T00:00:00Z".parse().unwrap(),
+        flight: row.line.to_string(),
+    };
+    Segment { identity: Arc::new(identity), rows: vec![0, 1, 2], means, temperature_assumed: false }
+}
+
+/// Root mean square over Mach numbers of the mean error at each, %: what depends on the level, of which drag is no function, is in
+/// both.
+fn rms_by_mach(segments: &[Segment], evaluated: &[Option<Evaluated>]) -> f64 {
+    let mut of_mach: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for (segment, evaluated) in segments.iter().zip(evaluated) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 1")]
+        let hundredths = (100.0 * segment.means.mach).round() as u32;
+        let error = evaluated.and_then(|of| of.error_percent);
+        of_mach.entry(hundredths).or_default().extend(error);
+    }
+    let mean = |errors: &Vec<f64>| errors.iter().sum::<f64>() / errors.len() as f64;
+    let well_known: Vec<f64> =
+        of_mach.values().filter(|errors| errors.len() >= 20).map(mean).collect();
+    assert!(well_known.len() >= 4, "{of_mach:?}");
+    (well_known.iter().map(|mean| mean * mean).sum::<f64>() / well_known.len() as f64).sqrt()
+}
+
+#[test]
+fn the_book_is_the_guide_and_not_the_polynomial_through_it() {
+    let aircraft = Aircraft::from_ron(AIRCRAFT).unwrap();
+    let guide = Guide::from_csv(GUIDE).unwrap();
+    let model = ModelFile::from_initial(&initial_model(&aircraft, &guide).unwrap(), &guide);
+    let segments: Vec<Segment> = guide.points().iter().map(flown).collect();
+    let by_book = rms_by_mach(&segments, &evaluate_book(&model, BookEffects::OfModel, &segments));
+    let by_initial = evaluate(&model.initial, model.initial.drag_table(), &segments);
+    let by_initial = rms_by_mach(&segments, &by_initial);
+    assert!(by_book < 0.5 && by_initial > 0.6, "{by_book} against {by_initial}");
+    // Without what the model contains: the same, as it contains nothing; and the initial table where a file has no rows.
+    let without = evaluate_book(&model, BookEffects::None, &segments);
+    assert_eq!(without, evaluate_book(&model, BookEffects::OfModel, &segments));
+    let older = ModelFile { by_guide: None, ..model };
+    let of_table = evaluate(&older.initial, older.initial.drag_table(), &segments);
+    assert_eq!(evaluate_book(&older, BookEffects::OfModel, &segments), of_table);
+}

@@ -1,0 +1,12 @@
+//! Tests of the whole crate from outside, in one program: each would be linked by itself.
+
+mod guides;
+mod layouts;
+mod mapping;
+mod mapping_forms;
+mod mapping_slips;
+mod reading;
+mod refusals;
+mod streaming;
+mod tables;
+mod writing;
