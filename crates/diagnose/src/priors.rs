@@ -198,7 +198,7 @@ deciding_numbers! {
             OurChoice "About the standard deviation of each over a fleet's cruise; a drag rise bends over 0.02 of Mach number.";
         GUIDE_SHAPE_DEVIATION: f64 = 0.06, "of fuel flow",
             "how far an aircraft's departure from its guide is believed to be another elsewhere in the guide's range",
-            OurChoice "Guides are off by 3 to 8 %, their level included; rows of two guides of JSBSim differ by as much between levels, of which drag is no function.";
+            OurChoice "Guides are off by 3 to 8 %, their level included, and by as much between levels.";
         GUIDE_SHAPE_LIFT: f64 = 0.10, "",
             "lift coefficient over which that departure bends",
             OurChoice "As the remainder.";

@@ -261,3 +261,115 @@ impl<'a, 'm> Departures<'a, 'm> {
         EffectPoint::from_flight_point(&point, aircraft.engines()).ok()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use effects::BetweenNodes;
+    use test_support::fleet::{Background, Setup, exact_model, fly};
+
+    use super::*;
+    use crate::library::Library;
+    use crate::library::dates::DateGrid;
+    use crate::residuals::reference::Reference;
+    use crate::signals::record::FlightRecord;
+
+    /// What six flights leave to a guide that may be off by 3 % alike everywhere.
+    fn with_guide(work: impl FnOnce(&Baseline, &Guide)) {
+        let fleet = fly(95, &Setup { flights: 6, ..Setup::default() }, &[], &Background::default());
+        let records: Vec<FlightRecord<'_>> =
+            fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
+        let model = exact_model();
+        let grid = Arc::clone(model.drag_table().grid());
+        let nodes = grid.nodes();
+        let belief = TableUncertainty::new(grid, 1, vec![0.03; nodes]).unwrap();
+        let taught =
+            Baseline::learn(&model, model.drag_table(), Some(belief), &records, None).unwrap();
+        let effects = EffectModel::new(&model, model.drag_table(), *taught.references())
+            .unwrap()
+            .between_nodes(BetweenNodes::Smooth);
+        let (data, _) = PreparedFlights::prepare(
+            &effects,
+            &records,
+            Reference::Untaught,
+            |points, engines, starts| {
+                let dates = DateGrid::coarse(starts, &[], None);
+                Library::new(&effects, points, engines, dates, |_| false)
+            },
+        );
+        work(&taught, &Guide::of(&effects, &taught, &data, &vec![false; nodes]));
+    }
+
+    fn inverse(of: &Mat<f64>) -> Mat<f64> {
+        let mut found = Mat::identity(of.nrows(), of.nrows());
+        Cholesky::new(of).unwrap().solve(&mut found);
+        found
+    }
+
+    /// The oracle is dense algebra in the other form: precisions add, V' = (V⁻¹ + AᵀC⁻¹A)⁻¹, m' = V'V⁻¹m.
+    #[test]
+    fn held_as_information_adds() {
+        with_guide(|taught, guide| {
+            let width = guide.width;
+            let deviations: Vec<f64> = (0..width).map(|k| taught.prior_deviation(k)).collect();
+            let count = guide.departures.len();
+            assert!(count > 20, "{count}");
+            let start: Vec<f64> = (0..width).map(|k| ((7 * k) as f64).sin()).collect();
+            let before = Mat::from_fn(width, width, |i, j| {
+                0.3 * start[i] * start[j] + if i == j { 0.5 } else { 0.0 }
+            });
+            let (mut mean, mut covariance) = (start.clone(), before.clone());
+            guide.hold(taught, &mut mean, &mut covariance, &deviations);
+            let rows =
+                Mat::from_fn(count, width, |k, j| guide.departures[k].slopes[j] * deviations[j]);
+            let precision = inverse(&before);
+            let added = rows.transpose() * inverse(&guide.covariance(taught)) * &rows;
+            let expected = inverse(&(&precision + added));
+            let mean_before = Mat::from_fn(width, 1, |k, _| start[k]);
+            let expected_mean = &expected * (&precision * mean_before);
+            for i in 0..width {
+                assert!((mean[i] - expected_mean[(i, 0)]).abs() < 1e-6, "{i}");
+                for j in 0..width {
+                    assert!((covariance[(i, j)] - expected[(i, j)]).abs() < 1e-6, "{i} {j}");
+                }
+            }
+        });
+    }
+
+    /// What is believed beforehand departs from the guide by tens of per cent at its ends; held, by little more than a guide is off.
+    /// States that flights flew are not asked.
+    #[test]
+    fn far_ends_are_no_farther_from_the_guide_than_guides_are() {
+        with_guide(|taught, guide| {
+            let width = guide.width;
+            let deviations: Vec<f64> = (0..width).map(|k| taught.prior_deviation(k)).collect();
+            let spread = |covariance: &Mat<f64>| {
+                let of = |one: &Departure| {
+                    let scaled = Mat::from_fn(width, 1, |k, _| one.slopes[k] * deviations[k]);
+                    let square = scaled.transpose() * covariance * &scaled;
+                    square[(0, 0)].sqrt()
+                };
+                guide.departures.iter().map(of).fold(0.0, f64::max)
+            };
+            let (mut mean, mut covariance) = (vec![0.0; width], Mat::identity(width, width));
+            let before = spread(&covariance);
+            guide.hold(taught, &mut mean, &mut covariance, &deviations);
+            let after = spread(&covariance);
+            assert!(before > 0.2 && after < 0.5 * before, "{before} {after}");
+            assert!(mean.iter().all(|value| value.abs() < 1e-15));
+            let is_flown = |one: &Departure| one.beyond.iter().flatten().all(|d| *d == 0.0);
+            assert!(!guide.departures.iter().any(is_flown));
+        });
+    }
+
+    /// By hand: the variance of an integrated Wiener process grows with the cube, and its two sides have nothing in common.
+    #[test]
+    fn processes_by_hand() {
+        for (one, other, expected) in
+            [(2.0, 2.0, 8.0), (-1.0, -1.0, 1.0), (1.0, 2.0, 2.5), (2.0, 1.0, 2.5), (-1.0, 2.0, 0.0)]
+        {
+            assert!((process(one, other) - expected).abs() < 1e-15, "{one} {other}");
+        }
+    }
+}

@@ -56,16 +56,10 @@ impl Physics {
         let grid = model.drag_table().grid();
         let lifts = mesh(grid.x().first(), grid.x().last(), PHYSICAL_LIFT_STEP);
         let machs = mesh(grid.y().first(), grid.y().last(), PHYSICAL_MACH_STEP);
-        let differences: Vec<Difference> = STANDING_EFFECTS
-            .iter()
-            .map(|effect| {
-                let step = 0.5 * baseline.references().typical_size(effect.id);
-                Difference::new(model, &Effects::none(), effect.id, effect.hidden, step)
-            })
-            .collect();
+        let states = Mesh::new(model, baseline, data);
         let at = |lift: &f64, mach: &f64| {
             let point = conditions.point(model, *lift, *mach)?;
-            Node::new(model, baseline, data, &differences, &point)
+            states.node(&point)
         };
         let nodes: Vec<Vec<Option<Node>>> =
             machs.iter().map(|mach| lifts.iter().map(|lift| at(lift, mach)).collect()).collect();
@@ -203,8 +197,11 @@ impl<'a, 'm> Mesh<'a, 'm> {
 
     /// Slopes of ln fuel flow along the coefficients, and the response there.
     pub(super) fn slopes(&self, point: &EffectPoint) -> Option<(Vec<f64>, Response)> {
-        let node = Node::new(self.model, self.baseline, self.data, &self.differences, point)?;
-        Some((node.slopes, node.response))
+        self.node(point).map(|node| (node.slopes, node.response))
+    }
+
+    fn node(&self, point: &EffectPoint) -> Option<Node> {
+        Node::new(self.model, self.baseline, self.data, &self.differences, point)
     }
 }
 

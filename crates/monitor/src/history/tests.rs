@@ -32,3 +32,32 @@ fn the_trend_is_that_of_both_where_an_event_may_be_a_step_or_none() {
     assert!((trend.value - value).abs() < 1e-9, "{} {value}", trend.value);
     assert!((trend.deviation - variance.sqrt()).abs() < 1e-9, "{} {variance}", trend.deviation);
 }
+
+/// The oracle is the fit that is given the boundary: a step that is known is one in every set, whatever its evidence, so that the trend is
+/// that beside it. Without it the same flights are a trend. An instant before all flights is no boundary.
+#[test]
+fn what_is_known_to_be_a_step_is_no_trend() {
+    let beliefs = ChangeBeliefs::of_2026();
+    let day = |days: i64| Timestamp::from_second(1_700_000_000 + 86_400 * days).unwrap();
+    // No trend, 0.6 % of noise that alternates, and a step of 0.8 % in the middle.
+    let percent = |k: i64| {
+        let noise = if k % 2 == 0 { 0.6 } else { -0.6 };
+        noise + if k >= 20 { 0.8 } else { 0.0 }
+    };
+    let flights =
+        (0..40).map(|k| FlightDeviation::of_segments(day(10 * k), &[percent(k)]).unwrap());
+    let series = Series::new(flights.collect()).unwrap();
+    let unknown = History::fit_to_events(&series, &[], &beliefs).unwrap();
+    assert!(unknown.changes.is_empty());
+    assert!(unknown.levels.trend_percent_per_year().value > 0.5);
+    let known = [day(199), day(-1)];
+    let found = History::fit_with_steps(&series, &[], &known, &beliefs).unwrap();
+    let beside = Levels::fit(&series, &found.weights, &[20], &beliefs).unwrap();
+    let (trend, expected) =
+        (found.levels.trend_percent_per_year(), beside.trend_percent_per_year());
+    assert!((trend.value - expected.value).abs() < 1e-12, "{trend:?} {expected:?}");
+    assert!((trend.deviation - expected.deviation).abs() < 1e-12, "{trend:?} {expected:?}");
+    assert!(trend.value.abs() < 0.6 * unknown.levels.trend_percent_per_year().value, "{trend:?}");
+    assert_eq!(found.levels.boundaries(), [20]);
+    assert!(found.changes.is_empty(), "a step that is known is not found");
+}

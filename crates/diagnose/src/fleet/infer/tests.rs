@@ -182,3 +182,16 @@ fn two_tails_are_no_fleet() {
     let found = diagnose_fleet(&mut tails.iter_mut().collect::<Vec<_>>());
     assert_eq!(found, Err(DiagnoseError::TooFewTails { found: 2, needed: 3 }));
 }
+
+/// By hand: what grows with time on a tail may be a step or a history as well, which a comparison without dates does not ask.
+#[test]
+fn what_grows_with_time_may_have_begun_at_a_date() {
+    let expected = [
+        (EffectId::EngineAgeing, EffectId::EngineHistory),
+        (EffectId::AirframeAgeing, EffectId::AirframeHistory),
+    ];
+    for (ageing, history) in expected {
+        assert_eq!(unasked_rivals(ageing), [EffectId::StepChange, history]);
+    }
+    assert!(unasked_rivals(EffectId::DragFactor).is_empty());
+}
