@@ -30,9 +30,9 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
     let body = html! {
         p.run { (head(document, options)) }
         p.note {
-            "Deviations, levels, trends and steps in tables and charts: 100 ln(recorded/predicted) fuel flow by the initial model, \
-             at each tail's mean conditions; positive, the aircraft burns more. Factors, and what is said in sentences: per cent of \
-             what is predicted, 100 (recorded/predicted − 1), which is " (signed(Some(monitored_fuel_factor_percent(10.0)))) " at a \
+            "Deviations, levels, trends and steps in tables and charts: 100 ln(recorded/predicted) fuel flow by the book \
+             (the rows of the guide), at each tail's mean conditions; positive, the aircraft burns more. Factors, and what is said in \
+             sentences: per cent of what is predicted, 100 (recorded/predicted − 1), which is " (signed(Some(monitored_fuel_factor_percent(10.0)))) " at a \
              deviation of +10. ± is half a 95 % interval. DSR: deviation of specific range, negative is worse."
         }
         p.note {

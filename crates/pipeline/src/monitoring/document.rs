@@ -246,7 +246,7 @@ pub struct FlightDocument {
     pub outside_table: usize,
     /// Deviation at reference conditions.
     pub deviation_percent: Figure,
-    /// At the conditions flown, against the initial model.
+    /// At the conditions flown, against the book.
     pub initial_deviation_percent: f64,
     /// By the model before it learnt the flight; absent where it was not rebuilt.
     pub before_learning_percent: Option<f64>,
@@ -260,7 +260,7 @@ pub struct FlightDocument {
     pub specific_range_deviation_percent: f64,
     /// Of each engine that is recorded.
     pub engines_percent: Vec<f64>,
-    /// Fuel beyond the initial model's prediction, first to last segment, kg.
+    /// Fuel beyond what the book says, first to last segment, kg.
     pub excess_fuel_kg: f64,
 }
 

@@ -239,7 +239,7 @@ impl<'a> MonitoredTail<'a> {
         }
     }
 
-    /// Its flights by the conditions flown: what each deviates by the initial model there, less what the level has changed since.
+    /// Its flights by the conditions flown: what each deviates by the book there, less what the level has changed since.
     #[must_use]
     pub fn flown_conditions(&self) -> FlownConditions {
         let levels = &self.history.levels;

@@ -18,7 +18,7 @@ pub enum Rows {
 #[must_use]
 pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     let mut text =
-        "Deviation of fuel flow from the initial model, 100 ln(recorded/predicted), %\n".to_owned();
+        "Deviation of fuel flow from the book, 100 ln(recorded/predicted), %\n".to_owned();
     text.push_str(&match rows {
         Rows::Tails => tails(document),
         Rows::Months => months(document),

@@ -131,13 +131,13 @@ pub(super) const OUTPUTS: [Output; 37] = [
     output(
         "deviation_percent",
         "%",
-        "monitor: 100 ln(recorded/predicted fuel flow) by the initial model, at the tail's mean\n\
+        "monitor: 100 ln(recorded/predicted fuel flow) by the book, at the tail's mean\n\
          conditions: positive, the aircraft burns more.",
     ),
     output(
         "initial_deviation_percent",
         "%",
-        "monitor: the same at the conditions flown, of which the initial model's own error is part.",
+        "monitor: the same at the conditions flown, of which the book's own error is part.",
     ),
     output(
         "before_learning_percent",
