@@ -7,6 +7,7 @@ pub(crate) mod eliminate;
 pub(crate) mod gram;
 pub(crate) mod half_spaces;
 pub(crate) mod horseshoe;
+pub(crate) mod integrated_wiener;
 pub(crate) mod lanes;
 pub(crate) mod linear;
 pub(crate) mod lower;

@@ -53,8 +53,7 @@ pub(crate) struct AtTable<'p> {
 pub fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
-    let beyond = (mach - divergence + LOCK_OFFSET_MACH).max(0.0);
-    LOCK_FACTOR * beyond.powi(4)
+    fourth_power_rise(mach - divergence, 1.0)
 }
 
 /// A rise that is steeper than Lock's and comes earlier with lift, its divergence the same: ∂CD/∂M = 0.1.
@@ -70,8 +69,14 @@ pub fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 
 pub fn steep_drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_OF_SWEPT_WING * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
-    let beyond = (mach - divergence + LOCK_OFFSET_MACH / STEEPNESS).max(0.0);
-    LOCK_FACTOR * STEEPNESS.powi(3) * beyond.powi(4)
+    fourth_power_rise(mach - divergence, STEEPNESS)
+}
+
+/// Lock's rise, so many times as steep, at a distance in Mach number from its divergence.
+#[inline]
+fn fourth_power_rise(from_divergence: f64, steepness: f64) -> f64 {
+    let beyond = (from_divergence + LOCK_OFFSET_MACH / steepness).max(0.0);
+    LOCK_FACTOR * steepness.powi(3) * beyond.powi(4)
 }
 
 /// Years from the reference date to a segment.

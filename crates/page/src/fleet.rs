@@ -123,7 +123,8 @@ fn table(rows: &[FleetRow<'_>]) -> Markup {
     html! {
         // Not a caption: it would be as wide as the table, beyond the edge of a phone.
         p.note { "Deviations and errors are in % of total fuel flow; ± is half a 95 % interval of the mean; std with n − 1; max without \
-                  its sign. Deviation: of the model that each began with. Fuel factor: what fuel flow by the guide's rows has to be raised by, %." }
+                  its sign. Deviation: of the model that each began with. Fuel factor: what fuel flow by the guide's rows has to be \
+                  raised by, %." }
         div.scroll tabindex="0" role="region" aria-label="All tails" {
             table.fleet.sort.data data-name="fleet" {
                 thead { tr {

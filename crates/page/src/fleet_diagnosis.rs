@@ -36,8 +36,9 @@ pub fn fleet_diagnosis(run: &FleetRun<'_>) -> String {
     let body = html! {
         p.run { (head(run)) }
         p.note {
-            "Sizes are shrunk: what one tail alone leaves open is taken from its type. ± is half a 95 % interval; 0 without one is believed where tails do not differ beyond what was found. A finding is what \
-             acts with so high a probability that of all findings at most 5 % are expected to be false."
+            "Sizes are shrunk: what one tail alone leaves open is taken from its type. ± is half a 95 % interval; 0 without one is \
+             believed where tails do not differ beyond what was found. A finding is what acts with so high a probability that of \
+             all findings at most 5 % are expected to be false."
         }
         @for (number, record) in run.fleets.iter().enumerate() {
             (section(run, &Fleet::new(record, number)))

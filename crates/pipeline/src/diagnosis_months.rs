@@ -6,7 +6,8 @@ use diagnose::SegmentGap;
 use flight::Timestamp;
 use monitor::Month;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::statistics::students_quantile975;
 
 /// The gap in one calendar month, UTC.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,15 +106,11 @@ impl Scatter {
         let (mut squares, mut freedom) = (0.0, 0.0);
         for month in months {
             let means = flight_means(&flights_of(month), value)?;
-            let total: f64 = means.iter().map(|(_, count)| count).sum();
-            let mean = means.iter().map(|(mean, count)| mean * count).sum::<f64>() / total;
+            let mean = mean_over_segments(&means);
             squares += means.iter().map(|(own, _)| (own - mean).powi(2)).sum::<f64>();
             freedom += means.len() as f64 - 1.0;
         }
-        if freedom < 1.0 {
-            return None;
-        }
-        let quantile = StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975);
+        let quantile = students_quantile975(freedom)?;
         Some(Self { deviation_percent: (squares / freedom).sqrt(), quantile })
     }
 }
@@ -130,6 +127,12 @@ fn flight_means(
     flights.iter().map(of_flight).collect()
 }
 
+/// Mean of flights' means by their numbers of segments.
+fn mean_over_segments(means: &[(f64, f64)]) -> f64 {
+    let total: f64 = means.iter().map(|(_, count)| count).sum();
+    means.iter().map(|(mean, count)| mean * count).sum::<f64>() / total
+}
+
 /// Mean over segments, and its 95 % interval by flight: segments of a flight err together. `None` where a segment has no value.
 fn mean(
     flights: &[FlightRows<'_, '_>],
@@ -138,7 +141,7 @@ fn mean(
 ) -> Option<(f64, Option<[f64; 2]>)> {
     let means = flight_means(flights, value)?;
     let total: f64 = means.iter().map(|(_, count)| count).sum();
-    let mean = means.iter().map(|(mean, count)| mean * count).sum::<f64>() / total;
+    let mean = mean_over_segments(&means);
     let squares: f64 = means.iter().map(|(_, count)| count * count).sum();
     let half = scatter.map(|of| of.quantile * of.deviation_percent * squares.sqrt() / total);
     Some((mean, half.map(|half| [mean - half, mean + half])))

@@ -77,15 +77,12 @@ impl TailResult {
     pub(crate) fn adapted_as_predicted(data: TailData, predicted: Option<&[Option<f64>]>) -> Self {
         // A whole model says more than the table that it has learnt.
         let whole = data.model.whole(Predicts::WholeModel);
-        let table = match whole {
-            Some(_) => data.model.initial.drag_table(),
-            None => data.model.drag_coefficient(),
-        };
-        let ByTables { one: before, other: by_table, book } =
-            evaluate_with_book(&data.model, table, &data.segments);
+        let learnt = whole.is_none().then(|| data.model.drag_coefficient());
+        let ByTables { initial: before, learnt: by_table, book } =
+            evaluate_with_book(&data.model, learnt, &data.segments);
         let after = match &whole {
             Some(whole) => {
-                evaluate_whole((whole, predicted), &data.model, &data.segments, by_table)
+                evaluate_whole((whole, predicted), &data.model, &data.segments, before.clone())
             }
             None => by_table,
         };
@@ -283,40 +280,42 @@ pub enum BookEffects {
     None,
 }
 
-/// What two tables and the book predict for each segment.
+/// What the initial table, the learnt one where it is asked, and the book predict for each segment.
 #[derive(Default)]
 struct ByTables {
-    one: Vec<Option<Evaluated>>,
-    other: Vec<Option<Evaluated>>,
+    initial: Vec<Option<Evaluated>>,
+    learnt: Vec<Option<Evaluated>>,
     book: Vec<Option<Evaluated>>,
 }
 
-/// By two tables and by the book, in one pass where segments give one observation for all.
-fn evaluate_with_book(model: &ModelFile, other: &Table, segments: &[Segment]) -> ByTables {
+/// By tables and by the book, in one pass where segments give one observation for all.
+fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Segment]) -> ByTables {
     let initial = &model.initial;
-    let one = initial.drag_table();
+    let table = initial.drag_table();
     if initial.effects().is_some() {
         return ByTables {
-            one: evaluate(initial, one, segments),
-            other: evaluate(initial, other, segments),
+            initial: evaluate(initial, table, segments),
+            learnt: learnt.map_or_else(Vec::new, |learnt| evaluate(initial, learnt, segments)),
             book: evaluate_book(model, BookEffects::OfModel, segments),
         };
     }
     let book = model.by_guide.as_ref().map(|guide| guide.drag_table());
     let mut found = ByTables::default();
     for segment in segments {
-        let by = if let Ok(observation) = initial.observe(segment) {
+        let (by_initial, by_learnt, by_guide) = if let Ok(observation) = initial.observe(segment) {
             let by = |table| Some(evaluated(table, segment, &observation));
-            let by_one = by(one);
+            let by_initial = by(table);
             let by_guide = book.map(|book| by_book(book, segment, &observation));
-            (by_one, by(other), by_guide.or(by_one))
+            (by_initial, learnt.and_then(by), by_guide.or(by_initial))
         } else {
             let state = without_errors(initial, segment);
             (state, state, state)
         };
-        found.one.push(by.0);
-        found.other.push(by.1);
-        found.book.push(by.2);
+        found.initial.push(by_initial);
+        if learnt.is_some() {
+            found.learnt.push(by_learnt);
+        }
+        found.book.push(by_guide);
     }
     found
 }

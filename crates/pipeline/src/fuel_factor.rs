@@ -17,11 +17,11 @@ use std::sync::Arc;
 
 use flight::{FlightIdentity, Segment};
 use monitor::airbus::rounded_up_to_a_tenth;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use units::PressureAltitude;
 
 use crate::columns::Columns;
 use crate::segments_table::Evaluated;
+use crate::statistics::students_quantile975;
 
 /// Bands of a quantity.
 struct Bands {
@@ -142,7 +142,7 @@ fn half_width95(values: &[f64], mean: f64) -> Option<f64> {
     let freedom = values.len().checked_sub(1).filter(|freedom| *freedom > 0)? as f64;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     let of_mean = (squares / freedom / values.len() as f64).sqrt();
-    Some(StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975) * of_mean)
+    Some(students_quantile975(freedom)? * of_mean)
 }
 
 impl Bands {

@@ -41,18 +41,19 @@ pub enum Merging {
 ///
 /// A merged model states how well it knows the mean of its tails, as of one aircraft.
 #[must_use]
-pub fn spread_of_tails_percent(models: &[ModelFile]) -> Option<f64> {
+pub fn spread_of_tails_percent(parts: &[Part]) -> Option<f64> {
     let learnt: Vec<&Learnt> =
-        models.iter().map(|one| one.learnt.as_ref()).collect::<Option<_>>()?;
+        parts.iter().map(|part| part.model.learnt.as_ref()).collect::<Option<_>>()?;
     let tails: BTreeSet<&str> = learnt.iter().map(|one| one.tail.as_str()).collect();
     if tails.len() < 2 {
         return None;
     }
     let states: Vec<FlightPoint> =
         learnt.iter().map(|one| one.references.mean_state()).collect::<Option<_>>()?;
-    let mut levels = Vec::with_capacity(models.len());
-    for model in models {
-        let predictor = Predictor::new(model, Predicts::WholeModel).ok()?.without_deviations();
+    let mut levels = Vec::with_capacity(parts.len());
+    for part in parts {
+        let predictor =
+            Predictor::new(&part.model, Predicts::WholeModel).ok()?.without_deviations();
         let mut sum = 0.0;
         for state in &states {
             let found = predictor.at(state).ok()?;

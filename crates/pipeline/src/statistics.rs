@@ -58,8 +58,14 @@ pub fn mean_half_width95_by_flight(flights: &[ErrorStatistics]) -> Option<f64> {
     let errors: f64 = sums.iter().map(|(_, n)| n).sum();
     let mean = sums.iter().map(|(sum, _)| sum).sum::<f64>() / errors;
     let squares: f64 = sums.iter().map(|(sum, n)| (sum - n * mean).powi(2)).sum();
-    let student = StudentsT::new(0.0, 1.0, count - 1.0).ok().filter(|_| sums.len() > 1)?;
-    Some(student.inverse_cdf(0.975) * (count / (count - 1.0) * squares).sqrt() / errors)
+    let quantile = students_quantile975(count - 1.0)?;
+    Some(quantile * (count / (count - 1.0) * squares).sqrt() / errors)
+}
+
+/// Student's 0.975 quantile of so many degrees of freedom: half a 95 % interval in standard deviations; `None` below one.
+pub(crate) fn students_quantile975(freedom: f64) -> Option<f64> {
+    let student = StudentsT::new(0.0, 1.0, freedom).ok().filter(|_| freedom >= 1.0)?;
+    Some(student.inverse_cdf(0.975))
 }
 
 /// Fuel factor − 1 in per cent, of a mean error in per cent *of recorded* fuel flow: what predicted fuel flow must be

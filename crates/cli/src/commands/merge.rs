@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         parts.push(part_of(path)?);
     }
     let bare = parts.iter().position(|part| part.flights.is_none());
-    let models: Vec<ModelFile> = parts.iter().map(|part| part.model.clone()).collect();
+    let spread = merging::spread_of_tails_percent(&parts);
     let (merged, how) = merging::merge(parts)
         .map_err(|(place, error)| Failure::bad_file(&arguments.models[place], error))?;
     let flights = merged.learnt.as_ref().map_or(0, |learnt| learnt.ledger.len());
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         sum(known) == sum(&merged) && known.difference_of_initial(&merged).is_none()
     })?;
     write_model(&merged, &arguments.output)?;
-    if let Some(percent) = merging::spread_of_tails_percent(&models) {
+    if let Some(percent) = spread {
         tracing::warn!(
             "the models are of several tails, which differ by {percent:.2} % of fuel flow (standard deviation): the merged model says how \
              well it knows their mean, and each of them, like any other tail, is off it by about that"

@@ -3,6 +3,8 @@
 //! Difficult: what is free on a tail, what is free in the type, and how much everything else may act are chosen in turn, each
 //! given the others, until they stay; every choice is by evidence. Probabilities come from the last turn.
 
+use flight::effect::EffectId;
+
 use crate::fleet::false_discoveries::kept;
 use crate::fleet::found::{FleetDiagnosis, FleetFinding, FleetLevel};
 use crate::fleet::frame::{FleetTail, SharedColumns};
@@ -17,7 +19,6 @@ use crate::priors::{
 };
 use crate::signals::references::DiagnoseError;
 use crate::thresholds::{FALSE_DISCOVERIES, FEWEST_TAILS_OF_A_FLEET, FLEET_SWEEPS};
-use flight::effect::EffectId;
 
 /// Diagnoses all tails of a type together. Takes their Gram matrices, which are most of the memory of a large fleet.
 ///

@@ -3,17 +3,16 @@
 //! Slopes that flights have shown go on beyond what was flown. Those of Mach number, lift coefficient, thrust and mass make up for each
 //! other as long as these rise and fall together, which they do among the flights and not beyond.
 
-use effects::{EffectModel, EffectPoint, Response, Variable};
+use effects::{EffectModel, Response, Variable};
 use faer::Mat;
 use lut::Outside;
-use perf_model::FlightPoint;
 use perf_model::model::NODE_WEIGHT_THRESHOLD;
-use units::convert::STANDARD_GRAVITY_M_S2;
-use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
+use units::{PressureAltitude, TemperatureDifference};
 
 use crate::baseline::Baseline;
-use crate::learning::physical::{Mesh, force_n, mesh};
+use crate::learning::physical::{Conditions, Mesh, mesh};
 use crate::math::cholesky::Cholesky;
+use crate::math::integrated_wiener;
 use crate::math::linear::{subtract_gram, symmetrize};
 use crate::priors::{GUIDE_SHAPE_DEVIATION, GUIDE_SHAPE_LIFT, GUIDE_SHAPE_MACH};
 use crate::residuals::rows::SegmentRow;
@@ -68,10 +67,13 @@ impl Guide {
         deviations: &[f64],
     ) {
         let (count, width) = (self.departures.len(), self.width);
+        if count == 0 {
+            return;
+        }
         let rows = Mat::from_fn(count, width, |k, j| self.departures[k].slopes[j] * deviations[j]);
         let mut spread = &rows * &*covariance;
         let stated = &spread * rows.transpose() + self.covariance(baseline);
-        let Some(root) = Cholesky::new(&stated).filter(|_| count > 0) else { return };
+        let Some(root) = Cholesky::new(&stated) else { return };
         let along = |k: usize| (0..width).map(|j| rows[(k, j)] * mean[j]).sum::<f64>();
         let mut off = Mat::from_fn(count, 1, |k, _| -along(k));
         root.solve(&mut off);
@@ -106,21 +108,11 @@ fn unflown(some: &[Vec<f64>], others: &[Vec<f64>], growths: &[f64]) -> f64 {
     for one in some {
         for other in others {
             for ((near, far), growth) in one.iter().zip(other).zip(growths) {
-                sum += growth * process(*near, *far);
+                sum += growth * integrated_wiener::covariance(*near, *far);
             }
         }
     }
     sum / (some.len() * others.len()) as f64
-}
-
-/// Covariance of an integrated Wiener process at two signed distances, 1 at 1; none between its two sides.
-fn process(one: f64, other: f64) -> f64 {
-    if one * other <= 0.0 {
-        return 0.0;
-    }
-    let (near, far) =
-        if one.abs() < other.abs() { (one.abs(), other.abs()) } else { (other.abs(), one.abs()) };
-    0.5 * near * near * (3.0 * far - near)
 }
 
 /// A departure from the guide.
@@ -140,8 +132,8 @@ struct Departures<'a, 'm> {
     model: &'a EffectModel<'m>,
     baseline: &'a Baseline,
     states: Mesh<'a, 'm>,
-    guide: GuideStates,
-    isa_deviation: TemperatureDifference,
+    /// At each level.
+    conditions: Vec<Conditions>,
     /// Mean lift coefficient and Mach number of the flights.
     middle: (f64, f64),
 }
@@ -170,12 +162,20 @@ impl<'a, 'm> Departures<'a, 'm> {
                 pressure_altitudes_m: range(Variable::PressureAltitude),
             }
         };
+        let guide = table.guide().unwrap_or_else(flown_states);
+        let (lowest_m, highest_m) = guide.pressure_altitudes_m;
+        let level_m =
+            |k: u32| lowest_m + f64::from(k) / f64::from(LEVELS - 1) * (highest_m - lowest_m);
+        let at_level = |k| Conditions {
+            altitude: PressureAltitude::meters(level_m(k)),
+            isa_deviation: TemperatureDifference::kelvin(mean(Variable::IsaDeviation)),
+            masses_kg: guide.masses_kg.0..=guide.masses_kg.1,
+        };
         Self {
             model,
             baseline,
             states: Mesh::new(model, baseline, data),
-            guide: table.guide().unwrap_or_else(flown_states),
-            isa_deviation: TemperatureDifference::kelvin(mean(Variable::IsaDeviation)),
+            conditions: (0..LEVELS).map(at_level).collect(),
             middle: (mean(Variable::LiftCoefficient), mean(Variable::Mach)),
         }
     }
@@ -219,11 +219,9 @@ impl<'a, 'm> Departures<'a, 'm> {
 
     /// Mean over the guide's levels; `None` where it has none there.
     fn departure(&self, place: (f64, f64)) -> Option<Departure> {
-        let (lowest_m, highest_m) = self.guide.pressure_altitudes_m;
-        let level_m =
-            |k: u32| lowest_m + f64::from(k) / f64::from(LEVELS - 1) * (highest_m - lowest_m);
-        let at = |k: u32| self.states.slopes(&self.point(place, level_m(k))?);
-        let found: Vec<(Vec<f64>, Response)> = (0..LEVELS).filter_map(at).collect();
+        let at =
+            |level: &Conditions| self.states.slopes(&level.point(self.model, place.0, place.1)?);
+        let found: Vec<(Vec<f64>, Response)> = self.conditions.iter().filter_map(at).collect();
         let (first, count) = (found.first()?, found.len() as f64);
         let mut mean = Departure {
             place,
@@ -242,63 +240,26 @@ impl<'a, 'm> Departures<'a, 'm> {
         }
         Some(mean)
     }
-
-    /// The point of a lift coefficient and a Mach number at this level, which is a mass; `None` beyond the guide's.
-    fn point(&self, (lift, mach): (f64, f64), level_m: f64) -> Option<EffectPoint> {
-        let aircraft = self.model.aircraft();
-        let altitude = PressureAltitude::meters(level_m);
-        let pressure_pa = atmos::isa::pressure(altitude).ok()?.to_pascals();
-        let area_m2 = aircraft.wing_area().to_square_meters();
-        let mass_kg = lift * force_n(pressure_pa, mach, area_m2) / STANDARD_GRAVITY_M_S2;
-        let (low_kg, high_kg) = self.guide.masses_kg;
-        if !(low_kg..=high_kg).contains(&mass_kg) {
-            return None;
-        }
-        let point = FlightPoint {
-            isa_deviation: self.isa_deviation,
-            ..FlightPoint::new(Mass::kilograms(mass_kg), altitude, Mach::new(mach))
-        };
-        EffectPoint::from_flight_point(&point, aircraft.engines()).ok()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
-    use effects::BetweenNodes;
     use test_support::fleet::{Background, Setup, exact_model, fly};
 
     use super::*;
-    use crate::library::Library;
-    use crate::library::dates::DateGrid;
-    use crate::residuals::reference::Reference;
-    use crate::signals::record::FlightRecord;
+    use crate::learning::tests::with_taught;
 
     /// What six flights leave to a guide that may be off by 3 % alike everywhere.
     fn with_guide(work: impl FnOnce(&Baseline, &Guide)) {
         let fleet = fly(95, &Setup { flights: 6, ..Setup::default() }, &[], &Background::default());
-        let records: Vec<FlightRecord<'_>> =
-            fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-        let model = exact_model();
-        let grid = Arc::clone(model.drag_table().grid());
-        let nodes = grid.nodes();
-        let belief = TableUncertainty::new(grid, 1, vec![0.03; nodes]).unwrap();
-        let taught =
-            Baseline::learn(&model, model.drag_table(), Some(belief), &records, None).unwrap();
-        let effects = EffectModel::new(&model, model.drag_table(), *taught.references())
-            .unwrap()
-            .between_nodes(BetweenNodes::Smooth);
-        let (data, _) = PreparedFlights::prepare(
-            &effects,
-            &records,
-            Reference::Untaught,
-            |points, engines, starts| {
-                let dates = DateGrid::coarse(starts, &[], None);
-                Library::new(&effects, points, engines, dates, |_| false)
-            },
-        );
-        work(&taught, &Guide::of(&effects, &taught, &data, &vec![false; nodes]));
+        let table = exact_model().drag_table().clone();
+        let nodes = table.grid().nodes();
+        let belief = TableUncertainty::new(Arc::clone(table.grid()), 1, vec![0.03; nodes]).unwrap();
+        with_taught(&fleet.flights, (&table, Some(belief)), false, |effects, taught, data| {
+            work(taught, &Guide::of(effects, taught, data, &vec![false; nodes]));
+        });
     }
 
     fn inverse(of: &Mat<f64>) -> Mat<f64> {
@@ -361,15 +322,5 @@ mod tests {
             let is_flown = |one: &Departure| one.beyond.iter().flatten().all(|d| *d == 0.0);
             assert!(!guide.departures.iter().any(is_flown));
         });
-    }
-
-    /// By hand: the variance of an integrated Wiener process grows with the cube, and its two sides have nothing in common.
-    #[test]
-    fn processes_by_hand() {
-        for (one, other, expected) in
-            [(2.0, 2.0, 8.0), (-1.0, -1.0, 1.0), (1.0, 2.0, 2.5), (2.0, 1.0, 2.5), (-1.0, 2.0, 0.0)]
-        {
-            assert!((process(one, other) - expected).abs() < 1e-15, "{one} {other}");
-        }
     }
 }

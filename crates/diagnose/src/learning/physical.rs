@@ -38,11 +38,11 @@ struct Node {
     ln_drag: f64,
 }
 
-/// The conditions of the mesh.
-struct Conditions {
-    altitude: PressureAltitude,
-    isa_deviation: TemperatureDifference,
-    masses_kg: RangeInclusive<f64>,
+/// What a lift coefficient and a Mach number become flight points at.
+pub(super) struct Conditions {
+    pub(super) altitude: PressureAltitude,
+    pub(super) isa_deviation: TemperatureDifference,
+    pub(super) masses_kg: RangeInclusive<f64>,
 }
 
 impl Physics {
@@ -106,8 +106,13 @@ impl Conditions {
         }
     }
 
-    /// The flight point of a lift coefficient and a Mach number; `None` at masses far from those that were flown.
-    fn point(&self, model: &EffectModel<'_>, lift: f64, mach: f64) -> Option<EffectPoint> {
+    /// The flight point of a lift coefficient and a Mach number; `None` at other masses.
+    pub(super) fn point(
+        &self,
+        model: &EffectModel<'_>,
+        lift: f64,
+        mach: f64,
+    ) -> Option<EffectPoint> {
         let pressure = atmos::isa::pressure(self.altitude).ok()?.to_pascals();
         let area_m2 = model.aircraft().wing_area().to_square_meters();
         let mass_kg = lift * force_n(pressure, mach, area_m2) / STANDARD_GRAVITY_M_S2;
@@ -167,7 +172,7 @@ impl Node {
 }
 
 /// Dynamic pressure times area, N: the force at a coefficient of 1.
-pub(super) fn force_n(static_pressure_pa: f64, mach: f64, area_m2: f64) -> f64 {
+fn force_n(static_pressure_pa: f64, mach: f64, area_m2: f64) -> f64 {
     0.5 * RATIO_OF_SPECIFIC_HEATS * static_pressure_pa * mach * mach * area_m2
 }
 
@@ -218,16 +223,12 @@ pub(super) fn mesh(first: f64, last: f64, step: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use effects::BetweenNodes;
     use test_support::fleet::{Background, Setup, exact_model, fly};
 
     use super::*;
-    use crate::library::Library;
-    use crate::library::dates::DateGrid;
+    use crate::learning::tests::with_taught;
     use crate::math::half_spaces::{Doubt, hold};
-    use crate::residuals::reference::Reference;
     use crate::residuals::whole::WholeModel;
-    use crate::signals::record::FlightRecord;
 
     const DOUBT: Doubt = Doubt { most: 2.0, least: -2.0 };
 
@@ -236,24 +237,10 @@ mod tests {
         work: impl FnOnce(&EffectModel<'_>, &Baseline, &PreparedFlights<'_>, &Physics),
     ) {
         let fleet = fly(94, &Setup { flights: 6, ..Setup::default() }, &[], &Background::default());
-        let records: Vec<FlightRecord<'_>> =
-            fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-        let model = exact_model();
-        let taught = Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap();
-        let effects = EffectModel::new(&model, model.drag_table(), *taught.references())
-            .unwrap()
-            .between_nodes(BetweenNodes::Smooth);
-        let (data, _) = PreparedFlights::prepare(
-            &effects,
-            &records,
-            Reference::Untaught,
-            |points, engines, starts| {
-                let dates = DateGrid::coarse(starts, &[], None);
-                Library::new(&effects, points, engines, dates, |_| false)
-            },
-        );
-        let physics = Physics::of(&effects, &taught, &data);
-        work(&effects, &taught, &data, &physics);
+        let table = exact_model().drag_table().clone();
+        with_taught(&fleet.flights, (&table, None), false, |effects, taught, data| {
+            work(effects, taught, data, &Physics::of(effects, taught, data));
+        });
     }
 
     /// The oracle is the whole model at two flight points: what it makes of the initial prediction differs by the slopes.

@@ -43,11 +43,25 @@ fn with_far_too_little_drag<T>(
 ) -> T {
     let setup = Setup { flights, ..Setup::default() };
     let fleet = fly(seed, &setup, &[], &Background::default());
-    let records = records(&fleet.flights);
+    let (table, belief) = far_too_little_drag(exact_model().drag_table());
+    let belief = Some(belief);
+    with_taught(&fleet.flights, (&table, belief), held_against_baseline, |_, taught, data| {
+        work(taught, data)
+    })
+}
+
+/// A baseline of flights against a table and what is believed of it, and what `work` finds with it and the flights held against
+/// it, or against the table alone.
+pub(super) fn with_taught<T>(
+    flights: &[Vec<Segment>],
+    (table, belief): (&lut::Table, Option<TableUncertainty>),
+    held_against_baseline: bool,
+    work: impl FnOnce(&EffectModel<'_>, &Baseline, &PreparedFlights<'_>) -> T,
+) -> T {
+    let records = records(flights);
     let model = exact_model();
-    let (table, belief) = far_too_little_drag(model.drag_table());
-    let taught = Baseline::learn(&model, &table, Some(belief), &records, None).unwrap();
-    let effects = EffectModel::new(&model, &table, *taught.references())
+    let taught = Baseline::learn(&model, table, belief, &records, None).unwrap();
+    let effects = EffectModel::new(&model, table, *taught.references())
         .unwrap()
         .between_nodes(BetweenNodes::Smooth);
     let nothing = |points: &[_], engines, starts: &[f64]| {
@@ -56,7 +70,7 @@ fn with_far_too_little_drag<T>(
     let baseline = held_against_baseline.then_some(&taught);
     let against = baseline.map_or(Reference::Untaught, Reference::Baseline);
     let (data, _) = PreparedFlights::prepare(&effects, &records, against, nothing);
-    work(&taught, &data)
+    work(&effects, &taught, &data)
 }
 
 /// A table with far too little drag: what is learnt moves the thrust at which N2 is looked up. Least squares leave the mean of
@@ -160,19 +174,8 @@ pub(crate) fn with_exact_table<T>(
     flights: &[Vec<Segment>],
     work: impl FnOnce(&Baseline, &PreparedFlights<'_>) -> T,
 ) -> T {
-    let records = records(flights);
-    let model = exact_model();
-    let table = model.drag_table();
-    let taught = Baseline::learn(&model, table, None, &records, None).unwrap();
-    let effects = EffectModel::new(&model, table, *taught.references())
-        .unwrap()
-        .between_nodes(BetweenNodes::Smooth);
-    let nothing = |points: &[_], engines, starts: &[f64]| {
-        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
-    };
-    let (data, _) =
-        PreparedFlights::prepare(&effects, &records, Reference::Baseline(&taught), nothing);
-    work(&taught, &data)
+    let table = exact_model().drag_table().clone();
+    with_taught(flights, (&table, None), true, |_, taught, data| work(taught, data))
 }
 
 /// `[baseline.6]`: drag that grows with lift coefficient is thrust, and N2 answers to it. The same fuel flow where N2 has not

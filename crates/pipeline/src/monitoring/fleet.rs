@@ -1,7 +1,6 @@
 //! Tails of a type together: their levels at common conditions, and the means over them.
 
 use monitor::{Estimate, FleetMean, FlownConditions, fleet_mean, to_common_conditions};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use units::PressureAltitude;
 
 use super::document::{
@@ -9,6 +8,7 @@ use super::document::{
     TypeConditions,
 };
 use super::flights::MeanConditions;
+use crate::statistics::students_quantile975;
 
 impl MonitorDocument {
     /// The document of these tails, in their order, each with its flights by the conditions flown: tails of a type are compared at
@@ -139,8 +139,7 @@ fn conditions_of(tails: &[&TailDocument]) -> TypeConditions {
 
 /// A mean over tails with its interval: Student's, and of a tail alone its own.
 fn of_tails(found: &FleetMean) -> Figure {
-    let student = StudentsT::new(0.0, 1.0, found.freedom() as f64).ok();
-    let factor = student.map_or(monitor::NORMAL_95, |student| student.inverse_cdf(0.975));
+    let factor = students_quantile975(found.freedom() as f64).unwrap_or(monitor::NORMAL_95);
     let (value, half) = (found.mean.value, factor * found.mean.deviation);
     Figure { value, ci95: [value - half, value + half] }
 }

@@ -1,6 +1,7 @@
 //! What a taught model does not know beyond what its flights flew, as columns of the nuisance.
 
 use crate::baseline::Baseline;
+use crate::math::integrated_wiener::covariance;
 use crate::residuals::rows::SegmentRow;
 
 /// Columns of one variable on one side of what was flown.
@@ -72,12 +73,6 @@ impl Beyond {
             }
         }
     }
-}
-
-/// Covariance of an integrated Wiener process, 1 at 1.
-fn covariance(one: f64, other: f64) -> f64 {
-    let (a, b) = if one < other { (one, other) } else { (other, one) };
-    0.5 * a * a * (3.0 * b - a)
 }
 
 /// Root of the process' covariance at its three places.
