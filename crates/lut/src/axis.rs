@@ -267,6 +267,12 @@ impl Axis {
         }
     }
 
+    /// Width of a cell.
+    #[inline]
+    pub(crate) fn width(&self, cell: usize) -> f64 {
+        self.breakpoints[cell + 1] - self.breakpoints[cell]
+    }
+
     /// Position of `coordinate`, `None` beyond the ends (or NaN); with `hold`, what is beyond takes the position of the
     /// nearer end.
     pub(crate) fn position(&self, coordinate: f64, hold: bool) -> Option<Position> {

@@ -102,10 +102,17 @@ impl Table {
     /// # Panics
     /// Where the cells are of a larger grid.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
-    #[expect(clippy::needless_range_loop, reason = "as loops over several points are")]
     #[must_use]
     #[inline(always)]
     pub fn interpolate_all<const N: usize>(&self, cells: &Cells<N>) -> [f64; N] {
+        bilinear(&self.corners_of_all(cells), cells)
+    }
+
+    /// As [`corners`](Self::corners) of all cells.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[expect(clippy::needless_range_loop, reason = "as above")]
+    #[inline(always)]
+    fn corners_of_all<const N: usize>(&self, cells: &Cells<N>) -> [[f64; N]; 4] {
         let mut corners = [[0.0; N]; 4];
         for place in 0..N {
             let nodes = cells.nodes(place);
@@ -113,16 +120,39 @@ impl Table {
                 corners[k][place] = self.values[nodes[k]];
             }
         }
-        let (u, v) = cells.shares();
-        let mut values = [0.0; N];
+        corners
+    }
+
+    /// The bilinear values at several located points, as [`interpolate_all`](Self::interpolate_all) has them, and their slopes along x,
+    /// on a grid line those of the cell that a point belongs to.
+    ///
+    /// # Panics
+    /// Where the cells are of a larger grid.
+    ///
+    /// # Source
+    /// Book `[tables.5]`.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[expect(clippy::needless_range_loop, reason = "as above")]
+    #[must_use]
+    #[inline(always)]
+    pub fn values_and_slopes_along_x<const N: usize>(
+        &self,
+        cells: &Cells<N>,
+    ) -> ([f64; N], [f64; N]) {
+        let corners = self.corners_of_all(cells);
+        let values = bilinear(&corners, cells);
+        let mut per_width = [0.0; N];
         for place in 0..N {
-            let [wa, wb, wc, wd] = Cell::weights_of(u[place], v[place]);
-            values[place] = wa * corners[0][place]
-                + wb * corners[1][place]
-                + wc * corners[2][place]
-                + wd * corners[3][place];
+            per_width[place] = 1.0 / self.grid.x().width(cells.indices(place).0);
         }
-        values
+        let (_, v) = cells.shares();
+        let mut slopes = [0.0; N];
+        for place in 0..N {
+            let low_y = corners[2][place] - corners[0][place];
+            let high_y = corners[3][place] - corners[1][place];
+            slopes[place] = (low_y + v[place] * (high_y - low_y)) * per_width[place];
+        }
+        (values, slopes)
     }
 
     /// Slopes along x and y of the bilinear surface at a located point.
@@ -174,4 +204,20 @@ impl From<Table> for Parts {
     fn from(table: Table) -> Self {
         Self { grid: Arc::unwrap_or_clone(table.grid), values: table.values }
     }
+}
+
+/// Values between the corners of cells.
+#[expect(clippy::inline_always, reason = "compiled for the vectors of the caller")]
+#[inline(always)]
+fn bilinear<const N: usize>(corners: &[[f64; N]; 4], cells: &Cells<N>) -> [f64; N] {
+    let (u, v) = cells.shares();
+    let mut values = [0.0; N];
+    for place in 0..N {
+        let [wa, wb, wc, wd] = Cell::weights_of(u[place], v[place]);
+        values[place] = wa * corners[0][place]
+            + wb * corners[1][place]
+            + wc * corners[2][place]
+            + wd * corners[3][place];
+    }
+    values
 }

@@ -1,6 +1,6 @@
 //! Time of predictions by all that a model has learnt, at points drawn where the Global 5000 of `fixtures/global5000` flies.
 //!
-//! `cargo run --release -p cruisefit-pipeline --example whole_speed -- MODEL.ron [POINTS] [means|flows]`; without a model one that has
+//! `cargo run --release -p cruisefit-pipeline --example whole_speed -- MODEL.ron [POINTS] [means|flows|deviations]`; without a model one that has
 //! learnt no more than its table.
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
 #![expect(clippy::disallowed_methods, reason = "the file of a measurement, not of the library")]
@@ -31,6 +31,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     match asked {
         Some("means") => predictor = predictor.without_deviations(),
         Some("flows") => predictor = predictor.with_columns(&[PredictedColumn::FuelFlow]),
+        Some("deviations") => {
+            let columns = [PredictedColumn::FuelFlow, PredictedColumn::FuelFlowDeviation];
+            predictor = predictor.with_columns(&columns);
+        }
         _ => {}
     }
     let mut random = Random::new(1, 1);

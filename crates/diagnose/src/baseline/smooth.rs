@@ -309,6 +309,11 @@ impl Prepared {
         map(values, |value| (value - middle) * per_unit)
     }
 
+    /// Lengths in a unit of the variable.
+    pub(crate) const fn per_length(&self) -> f64 {
+        1.0 / self.text.length
+    }
+
     /// Raises each number to how far a place in lengths lies beyond what was flown, as [`Smooth::is_beyond`] measures it.
     #[expect(clippy::inline_always, reason = "as the others")]
     #[inline(always)]

@@ -1,17 +1,21 @@
 //! A smooth function of one number, tabulated: a cubic on each of many equal pieces, a straight line beyond them.
 
 #![expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
-use crate::math::lanes::{LANES, Lanes, map};
+use crate::math::lanes::{LANES, Lanes, WHOLE, lowest_bits, map};
 
 /// Coefficients of a cubic, from the lowest power.
 type Cubic = [f64; 4];
 
-/// The cubics at several places.
-pub(crate) type Cubics = [Cubic; LANES];
-
-/// 2⁵²: a positive number that it is added to is rounded to a whole number, in its last bits.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// The cubics of a curve at several places.
+#[derive(Clone, Debug)]
+pub(crate) struct Fetched {
+    cubics: [Cubic; LANES],
+    /// Each place in its piece, whose width is 1.
+    at: Lanes,
+    pieces_per_unit: f64,
+}
 
 /// Largest number of pieces: a function that bends more often is asked itself.
 const MOST_PIECES: f64 = 16_384.0;
@@ -77,32 +81,71 @@ impl Curve {
     /// The function at places.
     #[inline(always)]
     pub(crate) fn at(&self, places: &Lanes) -> Lanes {
-        self.at_with(places, &mut [[0.0; 4]; LANES])
+        let mut found = Fetched::default();
+        self.fetch(places, &mut found);
+        found.values()
     }
 
-    /// The same with a place for the cubics, which many functions may use one after the other.
+    /// Its cubics at places: `found` may be used for many functions one after the other.
     #[inline(always)]
-    pub(crate) fn at_with(&self, places: &Lanes, cubics: &mut Cubics) -> Lanes {
+    pub(crate) fn fetch(&self, places: &Lanes, found: &mut Fetched) {
         let last = (self.pieces.len() - 1) as f64;
         let from_first = map(places, |x| (x - self.first) * self.pieces_per_unit);
         let shifted = map(&from_first, |t| if t > 0.0 { t } else { 0.0 });
         let shifted = map(&shifted, |t| if t < last { t } else { last } + WHOLE);
         // First all are fetched, point by point; then all are computed, several in one instruction.
         for lane in 0..LANES {
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "the lowest bits are what is wanted"
-            )]
-            let piece = shifted[lane].to_bits() as u32 as usize;
-            cubics[lane] = self.pieces[piece];
+            found.cubics[lane] = self.pieces[lowest_bits(shifted[lane])];
         }
+        found.pieces_per_unit = self.pieces_per_unit;
+        for lane in 0..LANES {
+            found.at[lane] = from_first[lane] - (shifted[lane] - WHOLE);
+        }
+    }
+}
+
+impl Default for Fetched {
+    fn default() -> Self {
+        Self { cubics: [[0.0; 4]; LANES], at: [0.0; LANES], pieces_per_unit: 1.0 }
+    }
+}
+
+impl Fetched {
+    /// The function at the places.
+    #[inline(always)]
+    pub(crate) fn values(&self) -> Lanes {
         let mut values = [0.0; LANES];
         for lane in 0..LANES {
-            let [a, b, c, d] = cubics[lane];
-            let x = from_first[lane] - (shifted[lane] - WHOLE);
+            let ([a, b, c, d], x) = (self.cubics[lane], self.at[lane]);
             values[lane] = a + x * (b + x * (c + x * d));
         }
         values
+    }
+
+    /// Its slopes there.
+    #[inline(always)]
+    pub(crate) fn slopes(&self) -> Lanes {
+        let mut slopes = [0.0; LANES];
+        for lane in 0..LANES {
+            let ([_, b, c, d], x) = (self.cubics[lane], self.at[lane]);
+            slopes[lane] = self.pieces_per_unit * (b + x * (2.0 * c + x * (3.0 * d)));
+        }
+        slopes
+    }
+
+    /// By how much the function is higher `above` the places than `below` them, both signed: by the cubics of the places, which go on.
+    /// Of s pieces' widths d the error is |f⁗|·(s·d)⁴/24 at most.
+    #[inline(always)]
+    pub(crate) fn rises(&self, above: &Lanes, below: &Lanes) -> Lanes {
+        let mut rises = [0.0; LANES];
+        for lane in 0..LANES {
+            let ([_, b, c, d], x) = (self.cubics[lane], self.at[lane]);
+            let (up, down) =
+                (self.pieces_per_unit * above[lane], self.pieces_per_unit * below[lane]);
+            let (up, down) = (x + up, x + down);
+            rises[lane] = up * (b + up * (c + up * d)) - down * (b + down * (c + down * d));
+        }
+        rises
     }
 }
 
@@ -145,6 +188,25 @@ mod tests {
             }
             assert!(worst <= error * (1.0 + 1e-3) && worst > 0.1 * error, "{error}: {worst}");
         }
+    }
+
+    /// The oracle is the standard library again; a cubic that goes on is off by the next term of Taylor's series.
+    #[test]
+    fn slopes_and_rises_are_those_of_the_function() {
+        let pieces = Pieces::within(-2.0, 3.0, 1.0, 1e-10);
+        let curve = Curve::new(pieces, (0.25, -0.5), |x| x.map(f64::sin)).unwrap();
+        let (above, below) = (0.05, -0.08);
+        let mut fetched = Fetched::default();
+        let mut farthest: f64 = 0.0;
+        for step in 0..=1000 {
+            let x = -1.9 + 0.0048 * f64::from(step);
+            curve.fetch(&[x; LANES], &mut fetched);
+            assert!((fetched.slopes()[1] - x.cos()).abs() < 1e-7, "{x}");
+            let rise = fetched.rises(&[above; LANES], &[below; LANES])[1];
+            farthest = farthest.max((rise - ((x + above).sin() - (x + below).sin())).abs());
+        }
+        assert!(farthest < (0.05_f64.powi(4) + 0.08_f64.powi(4)) / 24.0 * 2.0, "{farthest}");
+        assert!(farthest > 1e-9, "{farthest}");
     }
 
     #[test]

@@ -13,6 +13,16 @@ pub(crate) const LANES: usize = 32;
 /// A quantity at each point.
 pub(crate) type Lanes = [f64; LANES];
 
+/// 2⁵²: a positive number that it is added to is rounded to a whole number, in its last bits.
+pub(crate) const WHOLE: f64 = 4_503_599_627_370_496.0;
+
+/// The whole number, below 2³², that [`WHOLE`] was added to.
+#[expect(clippy::cast_possible_truncation, reason = "the lowest bits are what is wanted")]
+#[inline(always)]
+pub(crate) const fn lowest_bits(shifted: f64) -> usize {
+    shifted.to_bits() as u32 as usize
+}
+
 /// A function of every number.
 #[inline(always)]
 pub(crate) fn map<const N: usize>(values: &[f64; N], of: impl Fn(f64) -> f64) -> [f64; N] {

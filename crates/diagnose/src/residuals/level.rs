@@ -2,11 +2,11 @@
 //!
 //! A difficult file. It finds what [`WholeModel::of_point`](super::whole::WholeModel::of_point) finds, which asks the model some
 //! twenty times at each point: for slopes along everything that sensors measure, and for the effects that a fleet always shows.
-//! At such points most of that is known beforehand. An effect whose input is missing is what it was on average. A sensor's error
-//! moves few of the remainder's variables, so that only their functions are asked again. Functions of one variable are tabulated
-//! once for a model, their means as [curves](crate::math::curve), what is uncertain of them as [`directions`]; what is learnt of
-//! the drag table is a table itself. Points are computed a block at a time, several in one instruction; only tables are asked
-//! point by point.
+//! At such points most of that is known beforehand. An effect whose input is missing is what it was on average. Slopes along what
+//! sensors measure are derivatives of what was asked for the prediction, but for the Mach number's, within whose error drag may rise.
+//! Functions of one variable are tabulated once for a model, their means as [curves](crate::math::curve), what is uncertain of them as
+//! [`directions`]; what is learnt of the drag table is a table itself. Points are computed a block at a time, several in one
+//! instruction; only tables are asked point by point.
 
 #![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
@@ -29,7 +29,7 @@ use crate::math::lanes::{LANES, Lanes, add, map};
 use crate::math::vector_ln_exp::{NEAR, exp, ln, ln_of_near};
 use crate::residuals::level::directions::{Directions, MOST_RISES};
 use crate::residuals::level::drag::Drag;
-use crate::residuals::level::functions::Functions;
+use crate::residuals::level::functions::{Functions, Values};
 use crate::residuals::level::noise::{At, Noise};
 use crate::residuals::level::states::States;
 use crate::signals::noise::Statistics;
@@ -169,16 +169,18 @@ impl pulp::WithSimd for Compute<'_> {
         let states = States::of(block, &drag.coefficient);
         let slopes = model.slopes_of_rises(&states, &drag.coefficient);
         let (remainder, beyond, variance) = if self.of_variances {
-            let values = model.functions.values(&states);
+            let sides = model.noise.mach_sides(&model.drag, (block, &states), &mut is_known);
+            let values = model.functions.values(&states, &sides);
             let at = At {
-                functions: &model.functions,
-                table: &model.drag,
                 block,
                 states: &states,
                 drag: &drag,
-                values: &values,
+                along_lift: &model.drag.along_lift(block, &drag),
+                slopes: &model.functions.slopes(&values, &states),
+                sides: &sides,
+                rise_by_mach: &values.rise_by_mach,
             };
-            let variance = self.variance(simd, &at, &slopes, &mut is_known);
+            let variance = self.variance(simd, (&at, &values), &slopes);
             (values.sum, values.beyond, variance)
         } else {
             let (remainder, beyond) = model.functions.sum(&states);
@@ -212,15 +214,14 @@ impl Compute<'_> {
     fn variance<S: pulp::Simd>(
         &self,
         simd: S,
-        at: &At<'_>,
+        (at, values): (&At<'_>, &Values),
         rises: &[Lanes; MOST_RISES],
-        is_known: &mut [bool; LANES],
     ) -> Lanes {
         let Self { model, block, .. } = *self;
-        let mut variance = model.noise.variance(at, is_known);
-        add(&mut variance, 1.0, &model.functions.left(at.values));
+        let mut variance = model.noise.variance(at);
+        add(&mut variance, 1.0, &model.functions.left(values));
         let rises = &rises[..model.rises.len()];
-        model.directions.add_variances(simd, (at.values, rises), block, &mut variance);
+        model.directions.add_variances(simd, (values, rises), block, &mut variance);
         let left_out = model.drag.left_out(&block.cells);
         add(&mut variance, 1.0, &left_out);
         let stated = model.stated * model.stated;
@@ -317,3 +318,6 @@ fn standing_effects(model: &EffectModel<'_>, baseline: &Baseline) -> Option<Stan
     }
     (rises.len() <= MOST_RISES).then_some((rises, places, without_input))
 }
+
+#[cfg(test)]
+mod tests;

@@ -108,6 +108,17 @@ pub(crate) struct NoiseModel<'a> {
     pub(crate) predict: &'a dyn Fn(&Response) -> ByChannel,
 }
 
+/// Steps of slopes: of the mass a share of it.
+const TEMPERATURE_STEP_K: f64 = 1e-3;
+const ALTITUDE_STEP_M: f64 = 1e-3;
+const ACCELERATION_STEP_M_S2: f64 = 1e-5;
+const MASS_STEP: f64 = 1e-7;
+
+/// The step in Mach number of slopes.
+pub(crate) const fn mach_step(sensors: &SensorDeviations) -> f64 {
+    sensors.mach.max(1e-6)
+}
+
 impl NoiseModel<'_> {
     /// Propagates the sensors' standard deviations.
     ///
@@ -140,7 +151,8 @@ impl NoiseModel<'_> {
         Ok(SegmentNoise { factor, common, air_data, acceleration: added })
     }
 
-    /// Slopes of every channel along what sensors measure, by central differences.
+    /// Slopes of every channel along what sensors measure, by central differences: of Mach number over the sensor's error, within
+    /// which drag may rise, of all else over steps that are small beside any table's cell.
     fn slopes(&self, known: &KnownPoint) -> Result<Slopes, EffectError> {
         let point = known.point();
         let sensors = self.model.aircraft().sensors();
@@ -165,12 +177,12 @@ impl NoiseModel<'_> {
             };
             Ok::<ByChannel, EffectError>(between(step, &at(moved(step))?, &at(moved(-step))?))
         };
-        let by_mach = difference(sensors.mach.max(1e-6), &|step| EffectPoint {
+        let by_mach = difference(mach_step(sensors), &|step| EffectPoint {
             mach: point.mach + step,
             true_airspeed_m_s: point.true_airspeed_m_s * (1.0 + step / point.mach),
             ..*point
         })?;
-        let by_temperature = difference(sensors.static_air_temperature_k.max(1e-3), &|step| {
+        let by_temperature = difference(TEMPERATURE_STEP_K, &|step| {
             let sat_k = point.static_air_temperature_k + step;
             EffectPoint {
                 static_air_temperature_k: sat_k,
@@ -179,14 +191,15 @@ impl NoiseModel<'_> {
                 ..*point
             }
         })?;
-        let by_altitude = difference(sensors.pressure_altitude_m.max(0.1), &|step| EffectPoint {
+        let by_altitude = difference(ALTITUDE_STEP_M, &|step| EffectPoint {
             pressure_altitude_m: point.pressure_altitude_m + step,
             ..*point
         })?;
-        let by_acceleration =
-            of_motion(1e-4, &|step| (point.mass_kg, point.acceleration_m_s2 + step))?;
+        let by_acceleration = of_motion(ACCELERATION_STEP_M_S2, &|step| {
+            (point.mass_kg, point.acceleration_m_s2 + step)
+        })?;
         let by_mass =
-            of_motion(1e-3, &|step| (point.mass_kg * (1.0 + step), point.acceleration_m_s2))?;
+            of_motion(MASS_STEP, &|step| (point.mass_kg * (1.0 + step), point.acceleration_m_s2))?;
         Ok(Slopes {
             mach: by_mach,
             static_air_temperature: by_temperature,

@@ -28,6 +28,7 @@ fn side_by_side_as_one_by_one() {
         }
         cells.locate(&grid, &x, &y);
         let (bilinear, cubic) = (table.interpolate_all(&cells), smooth.values(&cells));
+        let (with_slopes, slopes) = table.values_and_slopes_along_x(&cells);
         for place in 0..8 {
             let single = grid.locate(x[place], y[place], Outside::Error);
             assert_eq!(cells.is_inside(place), single.is_ok(), "{} {}", x[place], y[place]);
@@ -41,6 +42,8 @@ fn side_by_side_as_one_by_one() {
             assert_eq!(bits(cells.weights(place)), bits(cell.weights()));
             assert_eq!(bilinear[place].to_bits(), table.interpolate(&cell).to_bits());
             assert_eq!(cubic[place].to_bits(), smooth.value(&cell).to_bits());
+            assert_eq!(with_slopes[place].to_bits(), bilinear[place].to_bits());
+            assert!((slopes[place] - table.gradient(&cell).0).abs() < 1e-12);
         }
     }
     assert!(inside > 8000 && outside > 1000, "{inside} {outside}");

@@ -19,6 +19,8 @@ pub struct SmoothTable {
     cells: Vec<Powers>,
     /// Cells along y.
     columns: usize,
+    /// Inverse widths of the cells along x.
+    per_width_x: Vec<f64>,
 }
 
 /// Of the four breakpoints about a cell of an axis: coefficients of the powers of the share of the cell's width, from the lowest.
@@ -47,7 +49,8 @@ impl SmoothTable {
                 cells.push(powers((of_x, of_y), &values[row * width + column..], width));
             }
         }
-        Self { cells, columns: columns - 1 }
+        let per_width_x = (0..rows - 1).map(|row| 1.0 / grid.x().width(row)).collect();
+        Self { cells, columns: columns - 1, per_width_x }
     }
 
     /// The value at a located point.
@@ -84,6 +87,35 @@ impl SmoothTable {
         values
     }
 
+    /// The same with their slopes along x.
+    ///
+    /// # Panics
+    /// Where the cells are of a larger grid.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[must_use]
+    #[inline(always)]
+    pub fn values_and_slopes_along_x<const N: usize>(
+        &self,
+        cells: &Cells<N>,
+    ) -> ([f64; N], [f64; N]) {
+        let (u, v) = cells.shares();
+        let mut powers = [[[0.0; NODES]; 2]; N];
+        let mut per_width = [0.0; N];
+        for place in 0..N {
+            let indices = cells.indices(place);
+            powers[place] = self.powers_of_v_and_slopes(indices, u[place]);
+            per_width[place] = self.per_width_x[indices.0];
+        }
+        let (mut values, mut slopes) = ([0.0; N], [0.0; N]);
+        for place in 0..N {
+            let ([value, slope], v) = (powers[place], v[place]);
+            values[place] = value[0] + v * (value[1] + v * (value[2] + v * value[3]));
+            let of_share = slope[0] + v * (slope[1] + v * (slope[2] + v * slope[3]));
+            slopes[place] = of_share * per_width[place];
+        }
+        (values, slopes)
+    }
+
     /// Coefficients of the powers of v in a cell.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
@@ -96,6 +128,21 @@ impl SmoothTable {
             }
         }
         of_v
+    }
+
+    /// The same, and those of their slopes along u.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn powers_of_v_and_slopes(&self, (row, column): (usize, usize), u: f64) -> [[f64; NODES]; 2] {
+        let [constant, linear, square, cubic] = &self.cells[row * self.columns + column];
+        let (mut of_v, mut slope) = (*cubic, [0.0; NODES]);
+        for power in [square, linear, constant] {
+            for k in 0..NODES {
+                slope[k] = slope[k] * u + of_v[k];
+                of_v[k] = of_v[k] * u + power[k];
+            }
+        }
+        [of_v, slope]
     }
 }
 
@@ -163,6 +210,7 @@ mod tests {
                 let values = (0..grid.nodes()).map(value).collect();
                 let table = Table::new(Arc::clone(&grid), values).unwrap();
                 let prepared = SmoothTable::new(&table);
+                let mut cells = Cells::<1>::default();
                 for step in 0..=2500 {
                     let x = 0.1 + 0.01 * f64::from(step % 51);
                     let y = 0.1 + 0.01 * f64::from(step / 51);
@@ -170,6 +218,15 @@ mod tests {
                     let cell = grid.locate(x, y, Outside::Error).unwrap();
                     let found = prepared.value(&cell);
                     assert!((found - known).abs() < 1e-14, "{x} {y}: {found}, {known}");
+                    // Its slope inside a cell, by the difference over a step that stays there.
+                    let (x, y) = (x + 0.005, y + 0.005);
+                    let at = |x| Some(SmoothCell::locate(&grid, x, y).ok()?.value_of(&table));
+                    let (Some(up), Some(down)) = (at(x + 1e-6), at(x - 1e-6)) else { continue };
+                    cells.locate(&grid, &[x], &[y]);
+                    let (values, slopes) = prepared.values_and_slopes_along_x(&cells);
+                    assert_eq!(values[0].to_bits(), prepared.values(&cells)[0].to_bits());
+                    let slope = (up - down) / 2e-6;
+                    assert!((slopes[0] - slope).abs() < 1e-7, "{x} {y}: {slopes:?}, {slope}");
                 }
             }
         }

@@ -7,6 +7,7 @@
 //! triangular: a term has no part in directions after its own. Terms are ordered so that those with most rows come first.
 
 #![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
+#![expect(clippy::manual_memcpy, reason = "as above: of a few vectors, which stay in registers")]
 
 use std::sync::OnceLock;
 
@@ -17,12 +18,13 @@ use pulp::Simd;
 
 use crate::baseline::Baseline;
 use crate::math::cholesky::Cholesky;
-use crate::math::lanes::{LANES, Lanes, add_product, map};
+use crate::math::lanes::{LANES, Lanes, WHOLE, add_product, lowest_bits, map};
 use crate::residuals::level::functions::{Functions, MOST, Tabulated, Values};
 use crate::signals::table_uncertainty::TableUncertainty;
 
-/// Directions that are summed together: four of the widest vectors that are compiled for.
-const TOGETHER: usize = 32;
+/// Directions that are summed together: two of the widest vectors that are compiled for. With more of them, more are summed that a term
+/// does not reach.
+const TOGETHER: usize = 16;
 
 /// Rows of a table for each length of a function. Cubics through four of them are off by 0.0234·f⁗·16⁻⁴ at most: a millionth of
 /// the function's prior deviation, as the kernel's fourth derivative is 3.
@@ -73,18 +75,16 @@ struct DragRows {
     of_nodes: Vec<OnceLock<Vec<Some32>>>,
 }
 
-/// Where the points of a block lie in the tables.
+/// Where the points of a block lie in a function's table.
 struct Places {
-    /// First of four rows of each function's table, their weights, and lengths beyond the table.
-    first: [[usize; LANES]; MOST],
-    weights: [[Lanes; 4]; MOST],
-    beyond: [Lanes; MOST],
-    /// Products of the variables.
-    products: [Lanes; MOST_PRODUCTS],
+    /// First of four rows, their weights, and lengths beyond the table.
+    first: [usize; LANES],
+    weights: [Lanes; 4],
+    beyond: Lanes,
 }
 
-/// Rows of the drag table's nodes about a point, and their weights.
-type DragPart<'a> = [(f32, &'a [Some32]); 4];
+/// The parts of the points of a block in [`TOGETHER`] directions.
+type Parts = [Some32; LANES];
 
 impl Directions {
     /// `rises` are places among the standing effects; `None` where the covariance is not positive definite.
@@ -124,7 +124,8 @@ impl Directions {
         })
     }
 
-    /// Adds the variance at each point of a block, whose drag rises have these slopes.
+    /// Adds the variance at each point of a block, whose drag rises have these slopes. Function by function: the rows of a table that
+    /// points share stay in a near cache.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
     pub(super) fn add_variances<S: Simd>(
@@ -134,144 +135,130 @@ impl Directions {
         points: &LevelBlock,
         variances: &mut Lanes,
     ) {
-        let places = self.places(values);
-        let mut of_model = [[0.0; TOGETHER]; LANES];
-        for place in 0..points.count.min(LANES) {
-            let drag = self.drag_part(&points.cells, place);
-            let mut squares = [0.0; TOGETHER];
-            for block in 0..self.level.len() {
-                let sum = self.sum(simd, (&places, rises, &drag), place, block);
-                let (into, _) = S::as_mut_simd_f32s(&mut squares);
-                let (sum, _) = S::as_simd_f32s(&sum);
-                for k in 0..into.len() {
-                    into[k] = simd.add_f32s(into[k], simd.mul_f32s(sum[k], sum[k]));
-                }
-            }
-            of_model[place] = squares;
+        let count = points.count.min(LANES);
+        let blocks = self.level.len();
+        let mut parts: Vec<Parts> = Vec::with_capacity(blocks);
+        for rows in &self.level {
+            parts.push([rows[0]; LANES]);
         }
-        // The same bits whatever the width of vectors.
-        for place in 0..points.count.min(LANES) {
-            let mut sums = [0.0; 8];
-            for from in (0..TOGETHER).step_by(8) {
-                for k in 0..8 {
-                    sums[k] += of_model[place][from + k];
+        self.add_products(simd, (values, rises), count, &mut parts);
+        for (function, table) in &self.functions {
+            let places = table.places(values.lengths(*function));
+            for block in 0..table.rows.len().min(blocks) {
+                for place in 0..count {
+                    table.add(simd, (&places, place), block, &mut parts[block][place]);
                 }
             }
-            let [a, b, c, d, e, f, g, h] = sums.map(f64::from);
-            variances[place] += ((a + b) + (c + d)) + ((e + f) + (g + h));
+        }
+        if let Some(drag) = &self.drag {
+            drag.add(simd, &points.cells, count, &mut parts);
+        }
+        for place in 0..count {
+            variances[place] += sum_of_squares(simd, &parts, place);
         }
     }
 
+    /// Adds the parts of products of the variables and of drag rises.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn places(&self, values: &Values) -> Places {
-        let mut places = Places {
-            first: [[0; LANES]; MOST],
-            weights: [[[0.0; LANES]; 4]; MOST],
-            beyond: [[0.0; LANES]; MOST],
-            products: [[0.0; LANES]; MOST_PRODUCTS],
-        };
-        for at in 0..self.functions.len().min(MOST) {
-            let (function, table) = &self.functions[at];
-            table.place(values.lengths(*function), at, &mut places);
-        }
+    fn add_products<S: Simd>(
+        &self,
+        simd: S,
+        (values, rises): (&Values, &[Lanes]),
+        count: usize,
+        parts: &mut [Parts],
+    ) {
+        let mut products = [[0.0; LANES]; MOST_PRODUCTS];
         let mut row = 0;
-        for first in 0..self.functions.len() {
-            for second in first + 1..self.functions.len() {
+        for first in 0..self.functions.len().min(MOST) {
+            for second in first + 1..self.functions.len().min(MOST) {
                 let (a, b) = (values.factors(first), values.factors(second));
-                add_product(&mut places.products[row], 1.0, a, b);
+                add_product(&mut products[row], 1.0, a, b);
                 row += 1;
             }
         }
-        places
-    }
-
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
-    fn drag_part(&self, cells: &Cells<LANES>, place: usize) -> DragPart<'_> {
-        let mut part: DragPart<'_> = [(0.0, &[]); 4];
-        if let Some(drag) = &self.drag {
-            let (weights, nodes) = (cells.weights(place), cells.nodes(place));
-            for k in 0..4 {
-                part[k] = (single(weights[k]), drag.row(nodes[k]));
+        for (rows, times) in [(&self.products, &products[..]), (&self.rises, rises)] {
+            for block in 0..rows.len().min(parts.len()) {
+                for place in 0..count {
+                    let mut sum = Sum::of(simd, &parts[block][place]);
+                    for k in 0..rows[block].len().min(times.len()) {
+                        sum.add(times[k][place], &rows[block][k]);
+                    }
+                    sum.write(&mut parts[block][place]);
+                }
             }
         }
-        part
     }
+}
 
-    /// The parts of a point in some directions.
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
-    fn sum<S: Simd>(
-        &self,
-        simd: S,
-        (places, rises, drag): (&Places, &[Lanes], &DragPart<'_>),
-        place: usize,
-        block: usize,
-    ) -> Some32 {
-        let mut found = self.level[block][0];
-        let (into, _) = S::as_mut_simd_f32s(&mut found);
-        let width = into.len().min(VECTORS);
-        for from in (0..into.len()).step_by(width) {
-            let mut sum = Sum { simd, values: [simd.splat_f32s(0.0); VECTORS], from, width };
-            if let Some(rows) = self.products.get(block) {
-                for k in 0..rows.len().min(MOST_PRODUCTS) {
-                    sum.add(places.products[k][place], &rows[k]);
-                }
-            }
-            if let Some(rows) = self.rises.get(block) {
-                for k in 0..rows.len().min(rises.len()) {
-                    sum.add(rises[k][place], &rows[k]);
-                }
-            }
-            for at in 0..self.functions.len().min(MOST) {
-                let table = &self.functions[at].1;
-                let Some(rows) = table.rows.get(block) else { continue };
-                let first = places.first[at][place];
-                let rows = &rows[first..first + 4];
-                for k in 0..4 {
-                    sum.add(places.weights[at][k][place], &rows[k]);
-                }
-                let beyond = places.beyond[at][place];
-                if beyond != 0.0 {
-                    sum.add(beyond, &table.slope[block][0]);
-                }
-            }
-            for (times, row) in drag {
-                if block < row.len() {
-                    sum.add(f64::from(*times), &row[block]);
-                }
-            }
-            for k in 0..width {
-                into[from + k] = simd.add_f32s(into[from + k], sum.values[k]);
-            }
+/// |part|² of a point, in an order that does not depend on the width of vectors.
+#[expect(clippy::inline_always, reason = "as above")]
+#[inline(always)]
+fn sum_of_squares<S: Simd>(simd: S, parts: &[Parts], place: usize) -> f64 {
+    let mut squares = [0.0_f32; TOGETHER];
+    for of_block in parts {
+        let (into, _) = S::as_mut_simd_f32s(&mut squares);
+        let (part, _) = S::as_simd_f32s(&of_block[place]);
+        for k in 0..into.len() {
+            into[k] = simd.add_f32s(into[k], simd.mul_f32s(part[k], part[k]));
         }
-        found
     }
+    let mut sums = [0.0_f32; 8];
+    for from in (0..TOGETHER).step_by(8) {
+        for k in 0..8 {
+            sums[k] += squares[from + k];
+        }
+    }
+    let [a, b, c, d, e, f, g, h] = sums;
+    let pair = |one: f32, other: f32| f64::from(one) + f64::from(other);
+    (pair(a, b) + pair(c, d)) + (pair(e, f) + pair(g, h))
 }
 
 /// Vectors that are summed side by side.
-const VECTORS: usize = 4;
+const VECTORS: usize = 2;
 
-/// Vectors of a sum, from one of a block's on.
+/// A sum of rows, in vectors side by side where these are wide enough for all of them.
 struct Sum<S: Simd> {
     simd: S,
     values: [S::f32s; VECTORS],
-    from: usize,
-    width: usize,
+    rest: Some32,
 }
 
 impl<S: Simd> Sum<S> {
+    /// Begins with this.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn of(simd: S, part: &Some32) -> Self {
+        let (vectors, _) = S::as_simd_f32s(part);
+        let mut values = [simd.splat_f32s(0.0); VECTORS];
+        for k in 0..vectors.len().min(VECTORS) {
+            values[k] = vectors[k];
+        }
+        Self { simd, values, rest: *part }
+    }
+
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
     fn add(&mut self, times: f64, row: &Some32) {
-        let (row, _) = S::as_simd_f32s(row);
-        let times = self.simd.splat_f32s(single(times));
-        for k in 0..VECTORS {
-            if k < self.width {
-                let product = self.simd.mul_f32s(times, row[self.from + k]);
-                self.values[k] = self.simd.add_f32s(self.values[k], product);
-            }
+        let times = single(times);
+        let (vectors, _) = S::as_simd_f32s(row);
+        let splat = self.simd.splat_f32s(times);
+        for k in 0..vectors.len().min(VECTORS) {
+            let product = self.simd.mul_f32s(splat, vectors[k]);
+            self.values[k] = self.simd.add_f32s(self.values[k], product);
+        }
+        for k in VECTORS * (TOGETHER / vectors.len())..TOGETHER {
+            self.rest[k] += times * row[k];
+        }
+    }
+
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn write(self, part: &mut Some32) {
+        *part = self.rest;
+        let (vectors, _) = S::as_mut_simd_f32s(part);
+        for k in 0..vectors.len().min(VECTORS) {
+            vectors[k] = self.values[k];
         }
     }
 }
@@ -298,33 +285,77 @@ impl Table {
     /// Where points lie in it, in lengths: on a cubic through four rows, beyond the table on a straight line.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn place(&self, z: &Lanes, at: usize, places: &mut Places) {
-        let last = (self.count - 1) as f64;
+    fn places(&self, z: &Lanes) -> Places {
+        let (last, last_low) = ((self.count - 1) as f64, (self.count - 3) as f64);
         let t = map(z, |z| (z - self.first) * ROWS_PER_LENGTH);
         let held = map(&t, |t| if t > 0.0 { t } else { 0.0 });
         let held = map(&held, |t| if t < last { t } else { last });
+        // Its second row: the whole number below or, where it is as good, above.
+        let low = map(&held, |t| if t > 1.5 { t - 0.5 } else { 1.0 });
+        let low = map(&low, |t| if t < last_low { t } else { last_low } + WHOLE);
+        let none = [0.0; LANES];
+        let mut places = Places { first: [0; LANES], weights: [none; 4], beyond: none };
         for lane in 0..LANES {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "held in it"
-            )]
-            let low = (held[lane] as i32 as usize).clamp(1, self.count - 3);
-            let x = held[lane] - low as f64;
+            let x = held[lane] - (low[lane] - WHOLE);
             let (below, above, far) = (x + 1.0, x - 1.0, x - 2.0);
-            places.first[at][lane] = low - 1;
-            places.weights[at][0][lane] = -SIXTH * (x * above * far);
-            places.weights[at][1][lane] = 0.5 * (below * above * far);
-            places.weights[at][2][lane] = -0.5 * (below * x * far);
-            places.weights[at][3][lane] = SIXTH * (below * x * above);
-            places.beyond[at][lane] = (t[lane] - held[lane]) / ROWS_PER_LENGTH;
+            places.weights[0][lane] = -SIXTH * (x * above * far);
+            places.weights[1][lane] = 0.5 * (below * above * far);
+            places.weights[2][lane] = -0.5 * (below * x * far);
+            places.weights[3][lane] = SIXTH * (below * x * above);
+            places.beyond[lane] = (t[lane] - held[lane]) / ROWS_PER_LENGTH;
         }
+        for lane in 0..LANES {
+            places.first[lane] = lowest_bits(low[lane]) - 1;
+        }
+        places
+    }
+
+    /// Adds its part at a point.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn add<S: Simd>(
+        &self,
+        simd: S,
+        (places, place): (&Places, usize),
+        block: usize,
+        part: &mut Some32,
+    ) {
+        let mut sum = Sum::of(simd, part);
+        let first = places.first[place];
+        let rows = &self.rows[block][first..first + 4];
+        for k in 0..4 {
+            sum.add(places.weights[k][place], &rows[k]);
+        }
+        let beyond = places.beyond[place];
+        if beyond != 0.0 {
+            sum.add(beyond, &self.slope[block][0]);
+        }
+        sum.write(part);
     }
 }
 
 const SIXTH: f64 = 1.0 / 6.0;
 
 impl DragRows {
+    /// Adds the parts at points.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn add<S: Simd>(&self, simd: S, cells: &Cells<LANES>, count: usize, parts: &mut [Parts]) {
+        for place in 0..count {
+            let (weights, [a, b, c, d]) = (cells.weights(place), cells.nodes(place));
+            let nodes = [self.row(a), self.row(b), self.row(c), self.row(d)];
+            for block in 0..parts.len() {
+                let mut sum = Sum::of(simd, &parts[block][place]);
+                for k in 0..4 {
+                    if block < nodes[k].len() {
+                        sum.add(weights[k], &nodes[k][block]);
+                    }
+                }
+                sum.write(&mut parts[block][place]);
+            }
+        }
+    }
+
     #[inline]
     fn row(&self, node: usize) -> &[Some32] {
         let Some(row) = self.of_nodes.get(node) else { return &[] };

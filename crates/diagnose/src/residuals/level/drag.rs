@@ -4,7 +4,7 @@ use effects::{BetweenNodes, value_continued};
 use lut::{Cells, Outside, SmoothTable, Table};
 use perf_model::LevelBlock;
 
-use crate::math::lanes::{LANES, Lanes, map};
+use crate::math::lanes::{LANES, Lanes, each, map};
 use crate::signals::table_uncertainty::TableUncertainty;
 
 /// The initial table as the model was learnt with it, and what was learnt.
@@ -32,6 +32,15 @@ pub(super) struct Found {
     pub(super) learnt: Lanes,
 }
 
+/// Slopes along ln lift coefficient.
+#[derive(Clone, Debug)]
+pub(super) struct AlongLift {
+    /// Of the initial table's ln drag.
+    pub(super) ln_drag: Lanes,
+    /// Of what was learnt of it.
+    pub(super) learnt: Lanes,
+}
+
 impl Drag {
     /// `None` where what was learnt makes no table.
     pub(super) fn new(
@@ -53,11 +62,10 @@ impl Drag {
         &self,
         (lift_coefficient, mach): (&Lanes, &Lanes),
         is_known: &mut [bool; LANES],
-        found: &mut Found,
-    ) {
+    ) -> Found {
         let mut cells = Cells::default();
         cells.locate(self.table.grid(), lift_coefficient, mach);
-        *found = self.in_cells(&cells);
+        let mut found = self.in_cells(&cells);
         for place in 0..LANES {
             if !cells.is_inside(place) {
                 (found.coefficient[place], found.learnt[place]) =
@@ -65,6 +73,7 @@ impl Drag {
             }
         }
         found.keep_positive(is_known);
+        found
     }
 
     /// Drag at the points of a block; false in `is_known` where it is not positive.
@@ -74,6 +83,29 @@ impl Drag {
         let mut found = self.in_cells(&block.cells);
         found.keep_positive(is_known);
         found
+    }
+
+    /// How both change with lift at the points of a block.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn along_lift(&self, block: &LevelBlock, found: &Found) -> AlongLift {
+        let lift = &block.lift_coefficient;
+        let (_, coefficient) = match self.between_nodes {
+            BetweenNodes::Smooth => self.smooth.values_and_slopes_along_x(&block.cells),
+            BetweenNodes::Straight => self.table.values_and_slopes_along_x(&block.cells),
+        };
+        let mut ln_drag = each(&coefficient, lift, |slope, lift| slope * lift);
+        for place in 0..LANES {
+            ln_drag[place] /= found.coefficient[place];
+        }
+        let learnt = match &self.learnt {
+            Some(learnt) => {
+                let (_, slopes) = learnt.mean.values_and_slopes_along_x(&block.cells);
+                each(&slopes, lift, |slope, lift| slope * lift)
+            }
+            None => [0.0; LANES],
+        };
+        AlongLift { ln_drag, learnt }
     }
 
     #[expect(clippy::inline_always, reason = "as above")]

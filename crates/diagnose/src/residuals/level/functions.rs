@@ -8,26 +8,13 @@ use effects::Variable;
 
 use crate::baseline::Baseline;
 use crate::baseline::smooth::Prepared;
-use crate::math::curve::{Cubics, Curve};
+use crate::math::curve::{Curve, Fetched};
 use crate::math::lanes::{LANES, Lanes, add, add_product, each, map};
-use crate::residuals::level::states::States;
+use crate::residuals::level::states::{MachSide, States};
 use crate::thresholds::FARTHEST_PRODUCT;
 
 /// Most variables that a remainder has.
-pub(super) const MOST: usize = 8;
-
-pub(super) const MACH: [Variable; 3] =
-    [Variable::Mach, Variable::LiftCoefficient, Variable::CorrectedThrust];
-pub(super) const TEMPERATURE: [Variable; 1] = [Variable::IsaDeviation];
-pub(super) const ALTITUDE: [Variable; 4] = [
-    Variable::LiftCoefficient,
-    Variable::PressureAltitude,
-    Variable::CorrectedThrust,
-    Variable::IsaDeviation,
-];
-pub(super) const MASS: [Variable; 3] =
-    [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::Mass];
-pub(super) const ACCELERATION: [Variable; 1] = [Variable::CorrectedThrust];
+pub(super) const MOST: usize = 6;
 
 /// The remainder's functions.
 #[derive(Clone, Debug)]
@@ -58,10 +45,22 @@ pub(super) struct Values {
     pub(super) beyond: Lanes,
     /// Each variable in lengths of its function.
     lengths: [Lanes; MOST],
-    functions: [Lanes; MOST],
-    /// Each variable as a factor of products, and how all products change with it.
+    /// Each variable as a factor of products.
     factors: [Lanes; MOST],
+    /// Slopes of all of it along each variable in lengths.
     slopes: [Lanes; MOST],
+    /// From one side of an error of the Mach number to the other.
+    pub(super) rise_by_mach: Lanes,
+}
+
+/// Slopes of the remainder along what the variables of a state are made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slopes {
+    pub(super) ln_lift: Lanes,
+    pub(super) ln_thrust: Lanes,
+    pub(super) ln_mass: Lanes,
+    pub(super) pressure_altitude_m: Lanes,
+    pub(super) isa_deviation_k: Lanes,
 }
 
 impl Functions {
@@ -134,22 +133,104 @@ impl Functions {
         }
     }
 
+    /// The remainder at states, on both sides of errors of their Mach numbers too.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    pub(super) fn values(&self, states: &States) -> Values {
+    pub(super) fn values(&self, states: &States, sides: &[MachSide; 2]) -> Values {
         let none = [[0.0; LANES]; MOST];
-        let (mut lengths, mut functions, mut factors) = (none, none, none);
+        let (mut lengths, mut factors, mut slopes) = (none, none, none);
+        let mut moves = [none, none];
         let mut sum = Sum::new(self.level);
+        let mut rise_by_mach = [0.0; LANES];
         for place in 0..self.smooth.len().min(MOST) {
-            let z = self.lengths(&self.smooth[place], states);
-            functions[place] = self.add(place, &z, &mut factors, &mut sum);
+            let one = &self.smooth[place];
+            let z = self.lengths(one, states);
+            self.add(place, &z, &mut factors, &mut sum);
+            slopes[place] = sum.fetched.slopes();
+            if let Some(at_sides) = self.lengths_at_sides(one, sides) {
+                let [above, below] = &at_sides;
+                let above_by = each(above, &z, |at, here| at - here);
+                let below_by = each(below, &z, |at, here| at - here);
+                add(&mut rise_by_mach, 1.0, &sum.fetched.rises(&above_by, &below_by));
+                for side in 0..2 {
+                    let there = factor(&at_sides[side]);
+                    moves[side][place] = each(&there, &factors[place], |at, here| at - here);
+                }
+            }
             lengths[place] = z;
         }
-        let mut slopes = none;
         for place in 0..self.smooth.len().min(MOST) {
-            slopes[place] = self.product(place, &factors);
+            let of_products = self.product(place, &factors);
+            let ([above, below], z) = (&moves, &lengths[place]);
+            let rise = each(&above[place], &below[place], |above, below| above - below);
+            add_product(&mut rise_by_mach, 1.0, &rise, &of_products);
+            for other in 0..place {
+                let mean = self.products[place][other];
+                add_product(&mut rise_by_mach, mean, &above[place], &above[other]);
+                add_product(&mut rise_by_mach, -mean, &below[place], &below[other]);
+            }
+            for lane in 0..LANES {
+                let is_held = z[lane].abs() > FARTHEST_PRODUCT;
+                slopes[place][lane] += if is_held { 0.0 } else { of_products[lane] };
+            }
         }
-        Values { sum: sum.value, beyond: sum.beyond, lengths, functions, factors, slopes }
+        Values { sum: sum.value, beyond: sum.beyond, lengths, factors, slopes, rise_by_mach }
+    }
+
+    /// A variable in lengths of its function on both sides of an error of the Mach number; `None` of one that it does not move.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn lengths_at_sides(&self, one: &Tabulated, sides: &[MachSide; 2]) -> Option<[Lanes; 2]> {
+        let (one, [above, below]) = (&one.prepared, sides);
+        match one.variable() {
+            Variable::Mach => Some([one.at(&above.mach), one.at(&below.mach)]),
+            Variable::LiftCoefficient => {
+                Some([one.at(&above.lift_coefficient), one.at(&below.lift_coefficient)])
+            }
+            Variable::CorrectedThrust => {
+                let per_reference = 1.0 / self.reference_thrust_n;
+                let above = map(&above.corrected_thrust_n, |thrust_n| thrust_n * per_reference);
+                let below = map(&below.corrected_thrust_n, |thrust_n| thrust_n * per_reference);
+                Some([one.at(&above), one.at(&below)])
+            }
+            _ => None,
+        }
+    }
+
+    /// Slopes along what the variables of the states are made of.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn slopes(&self, at: &Values, states: &States) -> Slopes {
+        let none = [0.0; LANES];
+        let mut found = Slopes {
+            ln_lift: none,
+            ln_thrust: none,
+            ln_mass: none,
+            pressure_altitude_m: none,
+            isa_deviation_k: none,
+        };
+        for place in 0..self.smooth.len().min(MOST) {
+            let (one, slopes) = (&self.smooth[place].prepared, &at.slopes[place]);
+            let per_length = one.per_length();
+            match one.variable() {
+                Variable::LiftCoefficient => {
+                    add_product(&mut found.ln_lift, per_length, slopes, &states.lift_coefficient);
+                }
+                Variable::CorrectedThrust => {
+                    let share = per_length / self.reference_thrust_n;
+                    add_product(&mut found.ln_thrust, share, slopes, &states.corrected_thrust_n);
+                }
+                Variable::Mass => {
+                    add_product(&mut found.ln_mass, per_length, slopes, &states.mass_kg);
+                }
+                Variable::PressureAltitude => {
+                    add(&mut found.pressure_altitude_m, per_length, slopes);
+                }
+                Variable::IsaDeviation => add(&mut found.isa_deviation_k, per_length, slopes),
+                _ => {}
+            }
+        }
+        found
     }
 
     /// The remainder alone, and by how many lengths the points lie beyond what was flown, as [`values`](Self::values) has them.
@@ -165,27 +246,20 @@ impl Functions {
         (sum.value, sum.beyond)
     }
 
-    /// Adds a function at these lengths and its products with those before it; returns the function.
+    /// Adds a function at these lengths and its products with those before it.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn add(&self, place: usize, z: &Lanes, factors: &mut [Lanes; MOST], sum: &mut Sum) -> Lanes {
+    fn add(&self, place: usize, z: &Lanes, factors: &mut [Lanes; MOST], sum: &mut Sum) {
         let one = &self.smooth[place];
         one.prepared.add_beyond(z, &mut sum.beyond);
-        let function = one.mean.at_with(z, &mut sum.cubics);
-        add(&mut sum.value, 1.0, &function);
+        one.mean.fetch(z, &mut sum.fetched);
+        add(&mut sum.value, 1.0, &sum.fetched.values());
         let mut of_others = [0.0; LANES];
         for other in 0..place {
             add(&mut of_others, self.products[place][other], &factors[other]);
         }
         factors[place] = factor(z);
         add_product(&mut sum.value, 1.0, &factors[place], &of_others);
-        function
-    }
-
-    /// How much the remainder at other states differs where only some variables do. Compiled once: it is asked ten
-    /// times.
-    pub(super) fn change(&self, at: &Values, states: &States, moved: &[Variable]) -> Lanes {
-        pulp::Arch::new().dispatch(Change { functions: self, at, states, moved })
     }
 
     /// Means of the products of one factor with others, times these.
@@ -237,49 +311,15 @@ impl Values {
 struct Sum {
     value: Lanes,
     beyond: Lanes,
-    cubics: Cubics,
+    /// The cubics of the function that was added last.
+    fetched: Fetched,
 }
 
 impl Sum {
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    const fn new(level: f64) -> Self {
-        Self { value: [level; LANES], beyond: [0.0; LANES], cubics: [[0.0; 4]; LANES] }
-    }
-}
-
-struct Change<'a> {
-    functions: &'a Functions,
-    at: &'a Values,
-    states: &'a States,
-    moved: &'a [Variable],
-}
-
-impl pulp::NullaryFnOnce for Change<'_> {
-    type Output = Lanes;
-
-    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
-    #[inline(always)]
-    fn call(self) -> Lanes {
-        let Self { functions, at, states, moved } = self;
-        let mut steps = [[0.0; LANES]; MOST];
-        let mut sum = [0.0; LANES];
-        for place in 0..functions.smooth.len().min(MOST) {
-            let one = &functions.smooth[place];
-            if !moved.contains(&one.prepared.variable()) {
-                continue;
-            }
-            let z = functions.lengths(one, states);
-            let mut step = factor(&z);
-            add(&mut step, -1.0, &at.factors[place]);
-            add(&mut sum, 1.0, &one.mean.at(&z));
-            add(&mut sum, -1.0, &at.functions[place]);
-            add_product(&mut sum, 1.0, &step, &at.slopes[place]);
-            // With each of those that moved before it.
-            add_product(&mut sum, 1.0, &step, &functions.product(place, &steps));
-            steps[place] = step;
-        }
-        sum
+    fn new(level: f64) -> Self {
+        Self { value: [level; LANES], beyond: [0.0; LANES], fetched: Fetched::default() }
     }
 }
 

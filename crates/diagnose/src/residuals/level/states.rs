@@ -37,6 +37,17 @@ impl States {
     }
 }
 
+/// The states on one side of an error of their Mach numbers: what of them is another.
+#[derive(Clone, Debug)]
+pub(super) struct MachSide {
+    pub(super) mach: Lanes,
+    pub(super) lift_coefficient: Lanes,
+    pub(super) corrected_thrust_n: Lanes,
+    pub(super) thrust_n: Lanes,
+    /// What was learnt of ln drag.
+    pub(super) learnt: Lanes,
+}
+
 /// δ of a point.
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
