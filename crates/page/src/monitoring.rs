@@ -131,7 +131,7 @@ fn alerts(document: &MonitorDocument) -> Markup {
                             ", or one step of " (figure(&step.step_percent)) " % between " (day(&step.after)) " and "
                             (day(&step.until)) ", when it did not fly"
                         }
-                        @if !alert.likely_causes.is_empty() { "; likely " (alert.likely_causes.join(", ")) }
+                        @if !alert.likely_causes.is_empty() { "; likely " (words::likely(alert)) }
                         @else if let Some(reason) = &alert.no_likely_cause { "; no likely cause: " (reason) }
                     }
                 }

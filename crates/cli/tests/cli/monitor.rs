@@ -100,10 +100,17 @@ fn alerts_set_the_exit_status_and_name_likely_causes() {
     let diagnosis = folder.path().join("diagnosis.json");
     let text = r#"{"diagnoses": [{"tail": "SIM-01", "compared": {"flights_learnt": 0},
         "verdict": {"kind": "effects", "effects": ["drag_factor"], "class": ["drag_factor", "tsfc_factor"],
-        "probability": 0.83, "closure": 0.9}}]}"#;
+        "probability": 0.83, "closure": 0.9},
+        "causes": [{"effect": "drag_factor", "magnitude": {"value": -2.1}}]}]}"#;
     std::fs::write(&diagnosis, text).unwrap();
     let more = ["--alert", "deviation=1", "--diagnosis", diagnosis.to_str().unwrap()];
-    let printed = monitor(&adapted, &more).expect(3).stdout;
+    let pages = folder.path().join("pages");
+    let with_page = [&more[..], &["-o", pages.to_str().unwrap()]].concat();
+    let printed = monitor(&adapted, &with_page).expect(3).stdout;
+    // A person reads words, at the sign that was found, where the diagnosis has one.
+    let page = std::fs::read_to_string(pages.join("monitor.html")).unwrap();
+    let words = flight::effect::EffectId::DragFactor.phrase(-1.0);
+    assert!(page.contains(&format!("likely {words} (drag_factor), or tsfc_factor")), "{words}");
     assert!(printed.contains("ALERT SIM-01"), "{printed}");
     assert!(printed.contains("likely: drag_factor, tsfc_factor"), "{printed}");
     // The tail's own model has learnt what it burns beyond its book; another tail's has not.

@@ -205,12 +205,18 @@ fn look_up(change: &ChangeDocument) -> String {
     )
 }
 
+/// The likely causes of an alert, the most probable first.
+pub(super) fn likely(alert: &AlertDocument) -> String {
+    let in_words = &alert.likely_causes_in_words;
+    if in_words.is_empty() { alert.likely_causes.join(", ") } else { in_words.join(", or ") }
+}
+
 /// Where the cause is named, or how to find it: by a model that has not learnt these flights.
 fn cause(tail: &TailDocument, alerts: &[AlertDocument], newest: Option<&ChangeDocument>) -> String {
     let of_tail = || alerts.iter().filter(|alert| alert.tail == tail.tail);
     if let Some(alert) = of_tail().find(|alert| !alert.likely_causes.is_empty()) {
-        let causes = alert.likely_causes.join(", ");
-        return format!("The newest diagnosis says {causes}: its page says what to do.");
+        let causes = likely(alert);
+        return format!("The newest diagnosis says: {causes}. Its page says what to do.");
     }
     if let Some(reason) = of_tail().find_map(|alert| alert.no_likely_cause.as_ref()) {
         return format!("The newest diagnosis names no cause: {reason}.");
@@ -339,6 +345,7 @@ mod tests {
             since: tail.from.clone(),
             step_in_gap: None,
             likely_causes: Vec::new(),
+            likely_causes_in_words: Vec::new(),
             no_likely_cause: Some("no cause stands out".to_owned()),
         };
         let told = advice(&tail, &alone(&tail, &[alert]));
@@ -434,10 +441,11 @@ mod tests {
             since: tail.from.clone(),
             step_in_gap: None,
             likely_causes: vec![format!("cause_of_{name}")],
+            likely_causes_in_words: vec![format!("what is of {name} (cause_of_{name})")],
             no_likely_cause: None,
         };
         let told = advice(&tail, &alone(&tail, &[alert("N2"), alert("N1")]));
-        assert!(told[0].contains("cause_of_N1"), "{told:?}");
+        assert!(told[0].contains("what is of N1 (cause_of_N1)"), "{told:?}");
         assert!(found(&tail).starts_with("Burns 1.19 ± 0.20 % less"), "{}", found(&tail));
     }
 

@@ -328,6 +328,9 @@ pub struct AlertDocument {
     pub step_in_gap: Option<StepInGapDocument>,
     /// Effects that the newest diagnosis of the tail names, where one is given and a cause stands out there.
     pub likely_causes: Vec<String>,
+    /// The same in words for a person, each at the sign that was found.
+    #[serde(skip)]
+    pub likely_causes_in_words: Vec<String>,
     /// Why that diagnosis names none, in words for a person.
     #[serde(skip)]
     pub no_likely_cause: Option<String>,

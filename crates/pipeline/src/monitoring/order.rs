@@ -119,6 +119,7 @@ mod tests {
             since: String::new(),
             step_in_gap: None,
             likely_causes: Vec::new(),
+            likely_causes_in_words: Vec::new(),
             no_likely_cause: None,
         };
         let document = MonitorDocument::new(tails, vec![alert]);

@@ -211,6 +211,25 @@ fn mass_of_a_load_sheet_in_columns() {
     assert_eq!(falling("2039.4").unwrap_err().kind.code(), "fuel-used-falls");
 }
 
+/// By hand: a thousand pounds are 453.59237 kg.
+#[test]
+fn a_load_sheet_in_thousands_of_pounds() {
+    let rows = "utc,alt,sat,mach,tas,gs,ff,zfw,fob,fu\n\
+        2024-03-01 10:00:00,37000,-56.5,0.78,447,450,2400,115.1,31,4.2\n\
+        2024-03-01 10:01:00,37000,-56.5,0.78,447,450,2400,115.1,31,4.3\n\
+        2024-03-01 10:02:00,37000,-56.5,0.78,447,450,2400,115.1,31,4.4\n";
+    let source = "LoadSheet(fuel_used: Columns([\"fu\"], \"klb\"), zero_fuel_weight: Column(\"zfw\", \"klb\"), fuel_on_board: Column(\"fob\", \"klb\"))";
+    let parsed = read(&mapping(&[(MASS, source)]), rows);
+    let header = parsed[0].report.header();
+    let near =
+        |found: f64, klb: f64| assert!((found - klb * 453.592_37).abs() < 1e-6, "{found} {klb}");
+    near(header.zero_fuel_mass.to_kilograms(), 115.1);
+    near(header.fuel_on_board.to_kilograms(), 31.0);
+    for (found, klb) in columns(&parsed).fuel_used_kg.iter().zip([4.2, 4.3, 4.4]) {
+        near(*found, klb);
+    }
+}
+
 #[test]
 fn mass_at_the_start_less_what_was_burnt() {
     // 2400 kg/h for 60 s is 40 kg.

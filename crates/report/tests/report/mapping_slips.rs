@@ -454,7 +454,7 @@ fn names_of_business_jets() {
         "\"ALT\": Recorded(column: \"BARO ALT (FT)\", unit: \"ft\"),   // ?",
         "\"SAT\": Recorded(column: \"Static Air Temp (C)\", unit: \"degC\"),\n",
         "\"VTAS\": Recorded(column: \"KTAS\", unit: \"kt\"),\n",
-        "GrossMass(column: \"GW (KLB)\", unit: \"lb\", scale: 1000, largest_rise_kg: 200),\n",
+        "GrossMass(column: \"GW (KLB)\", unit: \"klb\", largest_rise_kg: 200),\n",
     ] {
         assert!(first.contains(entry), "{entry}\n{first}");
     }
@@ -468,7 +468,12 @@ fn names_of_business_jets() {
         first.contains("\"SAT\": Recorded(column: \"temperature\", unit: \"K\"),   // ?"),
         "{first}"
     );
-    assert!(first.contains("GrossMass(column: \"TOGW (KLB)\", unit: \"lb\", scale: 1000, largest_rise_kg: 200),   // ?"), "{first}");
+    assert!(
+        first.contains(
+            "GrossMass(column: \"TOGW (KLB)\", unit: \"klb\", largest_rise_kg: 200),   // ?"
+        ),
+        "{first}"
+    );
     // Without a temperature, that of TAS and Mach number is better than the standard atmosphere's.
     let without = quarter_of_an_hour(&names.replace("Static Air Temp (C)", "OTHER"), row);
     let (first, parsed) = by_first_mapping(&without);

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use flight::effect::EffectId;
+use monitor::AlertRule;
 use pipeline::diagnosis_document::VerdictKind;
 use pipeline::diagnosis_words::{NO_CAUSE_STANDS_OUT, stands_out};
 use pipeline::monitoring::AlertDocument;
@@ -20,7 +22,21 @@ struct DiagnosisFile {
 struct TailDiagnosis {
     tail: String,
     verdict: Verdict,
+    #[serde(default)]
+    causes: Vec<Cause>,
     compared: Compared,
+}
+
+/// An effect of the library, and the size that it has by itself.
+#[derive(Debug, Deserialize)]
+struct Cause {
+    effect: String,
+    magnitude: Magnitude,
+}
+
+#[derive(Debug, Deserialize)]
+struct Magnitude {
+    value: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -50,8 +66,6 @@ struct Verdict {
     probability: f64,
 }
 
-/// The rule that looks at what a tail burns beyond its book.
-const DEVIATION: &str = "deviation=";
 /// Why a diagnosis against what a tail has learnt says nothing of what it burns beyond its book.
 const OF_OWN_MODEL: &str = "the newest diagnosis is against the tail's own model, which has learnt what it burns beyond its book";
 
@@ -75,8 +89,24 @@ impl Causes {
     /// where it advises to act on one; else why it names none.
     pub(crate) fn explain(&self, alert: &mut AlertDocument) {
         match self.of_alert(alert) {
-            Ok(causes) => alert.likely_causes = causes,
+            Ok(causes) => {
+                alert.likely_causes_in_words =
+                    causes.iter().map(|name| self.in_words(&alert.tail, name)).collect();
+                alert.likely_causes = causes;
+            }
             Err(reason) => alert.no_likely_cause = Some(reason),
+        }
+    }
+
+    /// An effect in words at the sign that was found on a tail, and its name.
+    fn in_words(&self, tail: &str, name: &str) -> String {
+        let found = self.0.iter().find(|diagnosis| diagnosis.tail == tail);
+        let cause = found.and_then(|found| found.causes.iter().find(|one| one.effect == name));
+        match (EffectId::from_name(name), cause) {
+            (Some(effect), Some(cause)) => {
+                format!("{} ({name})", effect.phrase(cause.magnitude.value))
+            }
+            _ => name.to_owned(),
         }
     }
 
@@ -84,7 +114,7 @@ impl Causes {
         let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == alert.tail) else {
             return Err("this tail was not diagnosed".to_owned());
         };
-        if alert.rule.starts_with(DEVIATION) && found.compared.is_own() {
+        if is_of_deviation(alert) && found.compared.is_own() {
             return Err(OF_OWN_MODEL.to_owned());
         }
         let verdict = &found.verdict;
@@ -109,4 +139,9 @@ impl Causes {
             VerdictKind::InsufficientData => Err("too little data for a diagnosis".to_owned()),
         }
     }
+}
+
+/// Whether the alert's rule looks at what a tail burns beyond its book.
+fn is_of_deviation(alert: &AlertDocument) -> bool {
+    matches!(alert.rule.parse(), Ok(AlertRule::Deviation { .. }))
 }

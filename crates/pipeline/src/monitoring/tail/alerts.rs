@@ -63,6 +63,7 @@ impl MonitoredTail<'_> {
                 AlertRule::Deviation { .. } | AlertRule::Change { .. } => None,
             },
             likely_causes: Vec::new(),
+            likely_causes_in_words: Vec::new(),
             no_likely_cause: None,
         }
     }

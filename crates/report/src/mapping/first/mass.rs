@@ -1,7 +1,7 @@
 //! The entry that tells where mass comes from.
 
 use super::columns::Columns;
-use super::names::{KILOPOUNDS, engine_of};
+use super::names::engine_of;
 use super::rules::{COMPUTED_FUEL, GAUGES, GROSS, Kind, TAKE_OFF, TANKS, USED, ZERO_FUEL};
 
 /// Where no column holds a mass: a number to be replaced.
@@ -14,13 +14,9 @@ impl Columns {
     pub(super) fn mass(&self) -> String {
         let amount = |column: usize| {
             let (fields, is_guess) = self.recorded(column, Kind::Mass);
-            let unit = ["lb", "t"].into_iter().find(|unit| fields.contains(&format!("{unit:?}")));
-            let unit = unit.unwrap_or("kg");
-            (self.names[column].sent.clone(), unit, is_guess)
+            (self.names[column].sent.clone(), mass_unit(&fields), is_guess)
         };
-        // Amounts have a unit and no scale.
-        let with_unit = |column: &usize| !self.names[*column].is_in(KILOPOUNDS);
-        let find = |rule| self.find(rule).filter(with_unit);
+        let find = |rule| self.find(rule);
         let gross = self.find(&GROSS).or_else(|| self.find(&TAKE_OFF).filter(|at| self.falls(*at)));
         let [zero, used] = [&ZERO_FUEL, &USED].map(find);
         let tanks = find(&GAUGES).or_else(|| find(&COMPUTED_FUEL));
@@ -81,11 +77,7 @@ impl Columns {
             || ANY_ZERO_FUEL_WEIGHT.to_owned(),
             |(name, unit, _)| format!("Column({name:?}, {unit:?})"),
         );
-        let unit = match self.recorded(left, Kind::Mass).0 {
-            fields if fields.contains("\"lb\"") => "lb",
-            fields if fields.contains("\"t\"") => "t",
-            _ => "kg",
-        };
+        let unit = mass_unit(&self.recorded(left, Kind::Mass).0);
         let [left, right] = [left, right].map(|column| &self.names[column].sent);
         format!(
             "ZeroFuelAndTanks(zero_fuel_weight: {zero}, tanks: [{left:?}, {right:?}], unit: {unit:?}, largest_rise_kg: 500),   // ?"
@@ -107,6 +99,12 @@ impl Columns {
         let numbers = || self.texts_of(column).filter_map(|text| self.number(text));
         numbers().next().zip(numbers().last()).is_some_and(|(first, last)| last < first)
     }
+}
+
+/// The unit among the fields of a recorded mass.
+fn mass_unit(fields: &str) -> &'static str {
+    let named = ["lb", "klb", "t"].into_iter().find(|unit| fields.contains(&format!("{unit:?}")));
+    named.unwrap_or("kg")
 }
 
 const fn mark(is_guess: bool) -> &'static str {

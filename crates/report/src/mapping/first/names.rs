@@ -37,8 +37,8 @@ const UNITS: [(&str, &str); 40] = [
     ("kg", "kg"),
     ("lbs", "lb"),
     ("lb", "lb"),
-    ("klbs", KILOPOUNDS),
-    ("klb", KILOPOUNDS),
+    ("klbs", "klb"),
+    ("klb", "klb"),
     ("tonnes", "t"),
     ("tonne", "t"),
     ("tons", "t"),
@@ -54,9 +54,8 @@ const UNITS: [(&str, &str); 40] = [
     ("k", "K"),
 ];
 
-/// Units that a mapping has by a scale.
+/// A unit that a mapping has by a scale.
 const GALLONS: &str = "gal/h";
-pub(super) const KILOPOUNDS: &str = "klb";
 /// A US gallon of kerosene of 0.803 kg/l, as fuel flow meters that count gallons take it: 6.7 lb.
 const POUNDS_OF_GALLON: &str = "unit: \"lb/h\", scale: 6.7";
 
@@ -112,7 +111,7 @@ impl Name {
             (Kind::Speed | Kind::CalibratedSpeed, "m/s") => "unit: \"m/s\"",
             (Kind::Mass, "kg") => "unit: \"kg\"",
             (Kind::Mass, "lb") => "unit: \"lb\"",
-            (Kind::Mass, KILOPOUNDS) => "unit: \"lb\", scale: 1000",
+            (Kind::Mass, "klb") => "unit: \"klb\"",
             (Kind::Mass, "t") => "unit: \"t\"",
             (Kind::Percent, "%") => "unit: \"%MAC\"",
             (Kind::Angle, "deg") => "unit: \"deg\"",
@@ -129,10 +128,6 @@ impl Name {
         let is_known = ["kg/h", "lb/h", "kg/s", "t/h"].contains(&unit);
         is_known.then(|| (format!("unit: {unit:?}"), false))
     }
-
-    pub(super) fn is_in(&self, unit: &str) -> bool {
-        self.unit == Some(unit)
-    }
 }
 
 /// What we call a unit that stands by itself, whatever its marks and capitals.
@@ -140,8 +135,8 @@ pub(super) fn unit_called(text: &str) -> Option<&'static str> {
     let plain: String =
         text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>().to_lowercase();
     let own = [
-        "kt", "ft", "m", "m/s", "kg", "lb", "t", "kg/h", "lb/h", "kg/s", "t/h", "degC", "K", "deg",
-        "%",
+        "kt", "ft", "m", "m/s", "kg", "lb", "klb", "t", "kg/h", "lb/h", "kg/s", "t/h", "degC", "K",
+        "deg", "%",
     ];
     let as_written = own.into_iter().find(|unit| *unit == text.trim());
     as_written.or_else(|| UNITS.iter().find(|(word, _)| *word == plain).map(|(_, unit)| *unit))

@@ -2,7 +2,7 @@
 
 use flight::column::{Column, ColumnUnit};
 use units::check_within;
-use units::convert::METERS_PER_FOOT;
+use units::convert::{KILOGRAMS_PER_POUND, METERS_PER_FOOT};
 
 use super::conversion::Conversion;
 use super::{Fill, Input, MachSource, TemperatureSource, TrueAirspeedSource};
@@ -196,18 +196,20 @@ pub(in crate::mapping) fn units_of(column: Column) -> impl Iterator<Item = Colum
     const fn unit(name: &'static str, factor: f64, offset: f64) -> ColumnUnit {
         ColumnUnit { name, factor, offset }
     }
-    let more = match column {
-        Column::PressureAltitude => Some(unit("FL", 100.0 * METERS_PER_FOOT, 0.0)),
-        Column::FuelUsed | Column::FuelQuantity => Some(unit("t", 1000.0, 0.0)),
+    const AMOUNTS: &[ColumnUnit] =
+        &[unit("t", 1000.0, 0.0), unit("klb", 1000.0 * KILOGRAMS_PER_POUND, 0.0)];
+    let more: &[ColumnUnit] = match column {
+        Column::PressureAltitude => const { &[unit("FL", 100.0 * METERS_PER_FOOT, 0.0)] },
+        Column::FuelUsed | Column::FuelQuantity => AMOUNTS,
         Column::FuelFlowTotal | Column::FuelFlowEngine(_) => {
-            Some(unit("t/h", 1000.0 / 3600.0, 0.0))
+            const { &[unit("t/h", 1000.0 / 3600.0, 0.0)] }
         }
         Column::StaticAirTemperature | Column::TotalAirTemperature => {
-            Some(unit("degF", 5.0 / 9.0, 273.15 - 32.0 * 5.0 / 9.0))
+            const { &[unit("degF", 5.0 / 9.0, 273.15 - 32.0 * 5.0 / 9.0)] }
         }
-        _ => None,
+        _ => &[],
     };
-    column.units().iter().copied().chain(more)
+    column.units().iter().chain(more).copied()
 }
 
 pub(super) fn known_unit(column: Column, unit: &str) -> Result<ColumnUnit, MappingError> {
