@@ -110,7 +110,7 @@ impl Table {
 
     /// As [`corners`](Self::corners) of all cells.
     #[expect(clippy::inline_always, reason = "as above")]
-    #[expect(clippy::needless_range_loop, reason = "as above")]
+    #[expect(clippy::needless_range_loop, reason = "loops over several points count")]
     #[inline(always)]
     fn corners_of_all<const N: usize>(&self, cells: &Cells<N>) -> [[f64; N]; 4] {
         let mut corners = [[0.0; N]; 4];
