@@ -157,30 +157,35 @@ struct Compute<'a> {
     of_variances: bool,
 }
 
-impl pulp::WithSimd for Compute<'_> {
+impl pulp::NullaryFnOnce for Compute<'_> {
     type Output = LevelAnswers;
 
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> LevelAnswers {
+    fn call(self) -> LevelAnswers {
         let Self { model, block, .. } = self;
         let mut is_known = block.is_known;
-        let drag = model.drag.of_block(block, &mut is_known);
+        let (drag, along_lift) = if self.of_variances {
+            let (drag, along_lift) = model.drag.of_block_along_lift(block, &mut is_known);
+            (drag, Some(along_lift))
+        } else {
+            (model.drag.of_block(block, &mut is_known), None)
+        };
         let states = States::of(block, &drag.coefficient);
         let slopes = model.slopes_of_rises(&states, &drag.coefficient);
-        let (remainder, beyond, variance) = if self.of_variances {
+        let (remainder, beyond, variance) = if let Some(along_lift) = &along_lift {
             let sides = model.noise.mach_sides(&model.drag, (block, &states), &mut is_known);
             let values = model.functions.values(&states, &sides);
             let at = At {
                 block,
                 states: &states,
                 drag: &drag,
-                along_lift: &model.drag.along_lift(block, &drag),
+                along_lift,
                 slopes: &model.functions.slopes(&values, &states),
                 sides: &sides,
                 rise_by_mach: &values.rise_by_mach,
             };
-            let variance = self.variance(simd, (&at, &values), &slopes);
+            let variance = self.variance(&at, &values, &slopes);
             (values.sum, values.beyond, variance)
         } else {
             let (remainder, beyond) = model.functions.sum(&states);
@@ -211,17 +216,12 @@ impl pulp::WithSimd for Compute<'_> {
 impl Compute<'_> {
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn variance<S: pulp::Simd>(
-        &self,
-        simd: S,
-        (at, values): (&At<'_>, &Values),
-        rises: &[Lanes; MOST_RISES],
-    ) -> Lanes {
+    fn variance(&self, at: &At<'_>, values: &Values, rises: &[Lanes; MOST_RISES]) -> Lanes {
         let Self { model, block, .. } = *self;
         let mut variance = model.noise.variance(at);
         add(&mut variance, 1.0, &model.functions.left(values));
         let rises = &rises[..model.rises.len()];
-        model.directions.add_variances(simd, (values, rises), block, &mut variance);
+        model.directions.add_variances((values, rises), block, &mut variance);
         let left_out = model.drag.left_out(&block.cells);
         add(&mut variance, 1.0, &left_out);
         let stated = model.stated * model.stated;

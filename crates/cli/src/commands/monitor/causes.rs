@@ -88,20 +88,25 @@ impl Causes {
     /// Puts the likely causes of its tail into an alert: the class of effects that the diagnosis names, the named ones first,
     /// where it advises to act on one; else why it names none.
     pub(crate) fn explain(&self, alert: &mut AlertDocument) {
-        match self.of_alert(alert) {
+        let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == alert.tail) else {
+            alert.no_likely_cause = Some("this tail was not diagnosed".to_owned());
+            return;
+        };
+        match found.of_alert(alert) {
             Ok(causes) => {
                 alert.likely_causes_in_words =
-                    causes.iter().map(|name| self.in_words(&alert.tail, name)).collect();
+                    causes.iter().map(|name| found.in_words(name)).collect();
                 alert.likely_causes = causes;
             }
             Err(reason) => alert.no_likely_cause = Some(reason),
         }
     }
+}
 
-    /// An effect in words at the sign that was found on a tail, and its name.
-    fn in_words(&self, tail: &str, name: &str) -> String {
-        let found = self.0.iter().find(|diagnosis| diagnosis.tail == tail);
-        let cause = found.and_then(|found| found.causes.iter().find(|one| one.effect == name));
+impl TailDiagnosis {
+    /// An effect in words at the sign that was found, and its name.
+    fn in_words(&self, name: &str) -> String {
+        let cause = self.causes.iter().find(|one| one.effect == name);
         match (EffectId::from_name(name), cause) {
             (Some(effect), Some(cause)) => {
                 format!("{} ({name})", effect.phrase(cause.magnitude.value))
@@ -111,13 +116,10 @@ impl Causes {
     }
 
     fn of_alert(&self, alert: &AlertDocument) -> Result<Vec<String>, String> {
-        let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == alert.tail) else {
-            return Err("this tail was not diagnosed".to_owned());
-        };
-        if is_of_deviation(alert) && found.compared.is_own() {
+        if is_of_deviation(alert) && self.compared.is_own() {
             return Err(OF_OWN_MODEL.to_owned());
         }
-        let verdict = &found.verdict;
+        let verdict = &self.verdict;
         match verdict.kind {
             VerdictKind::Effects if stands_out(verdict.probability) => {
                 let mut named = verdict.effects.clone();

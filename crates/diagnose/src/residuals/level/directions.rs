@@ -7,14 +7,12 @@
 //! triangular: a term has no part in directions after its own. Terms are ordered so that those with most rows come first.
 
 #![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
-#![expect(clippy::manual_memcpy, reason = "as above: of a few vectors, which stay in registers")]
 
 use std::sync::OnceLock;
 
 use faer::Mat;
 use lut::Cells;
 use perf_model::LevelBlock;
-use pulp::Simd;
 
 use crate::baseline::Baseline;
 use crate::math::cholesky::Cholesky;
@@ -128,9 +126,8 @@ impl Directions {
     /// points share stay in a near cache.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    pub(super) fn add_variances<S: Simd>(
+    pub(super) fn add_variances(
         &self,
-        simd: S,
         (values, rises): (&Values, &[Lanes]),
         points: &LevelBlock,
         variances: &mut Lanes,
@@ -141,29 +138,28 @@ impl Directions {
         for rows in &self.level {
             parts.push([rows[0]; LANES]);
         }
-        self.add_products(simd, (values, rises), count, &mut parts);
+        self.add_products((values, rises), count, &mut parts);
         for (function, table) in &self.functions {
             let places = table.places(values.lengths(*function));
             for block in 0..table.rows.len().min(blocks) {
                 for place in 0..count {
-                    table.add(simd, (&places, place), block, &mut parts[block][place]);
+                    table.add((&places, place), block, &mut parts[block][place]);
                 }
             }
         }
         if let Some(drag) = &self.drag {
-            drag.add(simd, &points.cells, count, &mut parts);
+            drag.add(&points.cells, count, &mut parts);
         }
         for place in 0..count {
-            variances[place] += sum_of_squares(simd, &parts, place);
+            variances[place] += sum_of_squares(&parts, place);
         }
     }
 
     /// Adds the parts of products of the variables and of drag rises.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn add_products<S: Simd>(
+    fn add_products(
         &self,
-        simd: S,
         (values, rises): (&Values, &[Lanes]),
         count: usize,
         parts: &mut [Parts],
@@ -180,11 +176,11 @@ impl Directions {
         for (rows, times) in [(&self.products, &products[..]), (&self.rises, rises)] {
             for block in 0..rows.len().min(parts.len()) {
                 for place in 0..count {
-                    let mut sum = Sum::of(simd, &parts[block][place]);
+                    let mut sum = parts[block][place];
                     for k in 0..rows[block].len().min(times.len()) {
-                        sum.add(times[k][place], &rows[block][k]);
+                        add_row(&mut sum, times[k][place], &rows[block][k]);
                     }
-                    sum.write(&mut parts[block][place]);
+                    parts[block][place] = sum;
                 }
             }
         }
@@ -194,13 +190,12 @@ impl Directions {
 /// |part|² of a point, in an order that does not depend on the width of vectors.
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
-fn sum_of_squares<S: Simd>(simd: S, parts: &[Parts], place: usize) -> f64 {
+fn sum_of_squares(parts: &[Parts], place: usize) -> f64 {
     let mut squares = [0.0_f32; TOGETHER];
     for of_block in parts {
-        let (into, _) = S::as_mut_simd_f32s(&mut squares);
-        let (part, _) = S::as_simd_f32s(&of_block[place]);
-        for k in 0..into.len() {
-            into[k] = simd.add_f32s(into[k], simd.mul_f32s(part[k], part[k]));
+        let part = of_block[place];
+        for k in 0..TOGETHER {
+            squares[k] += part[k] * part[k];
         }
     }
     let mut sums = [0.0_f32; 8];
@@ -214,52 +209,13 @@ fn sum_of_squares<S: Simd>(simd: S, parts: &[Parts], place: usize) -> f64 {
     (pair(a, b) + pair(c, d)) + (pair(e, f) + pair(g, h))
 }
 
-/// Vectors that are summed side by side.
-const VECTORS: usize = 2;
-
-/// A sum of rows, in vectors side by side where these are wide enough for all of them.
-struct Sum<S: Simd> {
-    simd: S,
-    values: [S::f32s; VECTORS],
-    rest: Some32,
-}
-
-impl<S: Simd> Sum<S> {
-    /// Begins with this.
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
-    fn of(simd: S, part: &Some32) -> Self {
-        let (vectors, _) = S::as_simd_f32s(part);
-        let mut values = [simd.splat_f32s(0.0); VECTORS];
-        for k in 0..vectors.len().min(VECTORS) {
-            values[k] = vectors[k];
-        }
-        Self { simd, values, rest: *part }
-    }
-
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
-    fn add(&mut self, times: f64, row: &Some32) {
-        let times = single(times);
-        let (vectors, _) = S::as_simd_f32s(row);
-        let splat = self.simd.splat_f32s(times);
-        for k in 0..vectors.len().min(VECTORS) {
-            let product = self.simd.mul_f32s(splat, vectors[k]);
-            self.values[k] = self.simd.add_f32s(self.values[k], product);
-        }
-        for k in VECTORS * (TOGETHER / vectors.len())..TOGETHER {
-            self.rest[k] += times * row[k];
-        }
-    }
-
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
-    fn write(self, part: &mut Some32) {
-        *part = self.rest;
-        let (vectors, _) = S::as_mut_simd_f32s(part);
-        for k in 0..vectors.len().min(VECTORS) {
-            vectors[k] = self.values[k];
-        }
+/// `sum += times·row`.
+#[expect(clippy::inline_always, reason = "as above")]
+#[inline(always)]
+fn add_row(sum: &mut Some32, times: f64, row: &Some32) {
+    let times = single(times);
+    for k in 0..TOGETHER {
+        sum[k] += times * row[k];
     }
 }
 
@@ -313,24 +269,18 @@ impl Table {
     /// Adds its part at a point.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn add<S: Simd>(
-        &self,
-        simd: S,
-        (places, place): (&Places, usize),
-        block: usize,
-        part: &mut Some32,
-    ) {
-        let mut sum = Sum::of(simd, part);
+    fn add(&self, (places, place): (&Places, usize), block: usize, part: &mut Some32) {
+        let mut sum = *part;
         let first = places.first[place];
         let rows = &self.rows[block][first..first + 4];
         for k in 0..4 {
-            sum.add(places.weights[k][place], &rows[k]);
+            add_row(&mut sum, places.weights[k][place], &rows[k]);
         }
         let beyond = places.beyond[place];
         if beyond != 0.0 {
-            sum.add(beyond, &self.slope[block][0]);
+            add_row(&mut sum, beyond, &self.slope[block][0]);
         }
-        sum.write(part);
+        *part = sum;
     }
 }
 
@@ -340,18 +290,18 @@ impl DragRows {
     /// Adds the parts at points.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, cells: &Cells<LANES>, count: usize, parts: &mut [Parts]) {
+    fn add(&self, cells: &Cells<LANES>, count: usize, parts: &mut [Parts]) {
         for place in 0..count {
             let (weights, [a, b, c, d]) = (cells.weights(place), cells.nodes(place));
             let nodes = [self.row(a), self.row(b), self.row(c), self.row(d)];
             for block in 0..parts.len() {
-                let mut sum = Sum::of(simd, &parts[block][place]);
+                let mut sum = parts[block][place];
                 for k in 0..4 {
                     if block < nodes[k].len() {
-                        sum.add(weights[k], &nodes[k][block]);
+                        add_row(&mut sum, weights[k], &nodes[k][block]);
                     }
                 }
-                sum.write(&mut parts[block][place]);
+                parts[block][place] = sum;
             }
         }
     }

@@ -85,27 +85,31 @@ impl Drag {
         found
     }
 
-    /// How both change with lift at the points of a block.
+    /// The same, and how both change with lift.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    pub(super) fn along_lift(&self, block: &LevelBlock, found: &Found) -> AlongLift {
-        let lift = &block.lift_coefficient;
-        let (_, coefficient) = match self.between_nodes {
-            BetweenNodes::Smooth => self.smooth.values_and_slopes_along_x(&block.cells),
-            BetweenNodes::Straight => self.table.values_and_slopes_along_x(&block.cells),
+    pub(super) fn of_block_along_lift(
+        &self,
+        block: &LevelBlock,
+        is_known: &mut [bool; LANES],
+    ) -> (Found, AlongLift) {
+        let (cells, lift) = (&block.cells, &block.lift_coefficient);
+        let (coefficient, slopes) = match self.between_nodes {
+            BetweenNodes::Smooth => self.smooth.values_and_slopes_along_x(cells),
+            BetweenNodes::Straight => self.table.values_and_slopes_along_x(cells),
         };
-        let mut ln_drag = each(&coefficient, lift, |slope, lift| slope * lift);
+        let (learnt, slopes_of_learnt) = match &self.learnt {
+            Some(learnt) => learnt.mean.values_and_slopes_along_x(cells),
+            None => ([0.0; LANES], [0.0; LANES]),
+        };
+        let mut found = Found { coefficient, learnt };
+        found.keep_positive(is_known);
+        let mut ln_drag = each(&slopes, lift, |slope, lift| slope * lift);
         for place in 0..LANES {
             ln_drag[place] /= found.coefficient[place];
         }
-        let learnt = match &self.learnt {
-            Some(learnt) => {
-                let (_, slopes) = learnt.mean.values_and_slopes_along_x(&block.cells);
-                each(&slopes, lift, |slope, lift| slope * lift)
-            }
-            None => [0.0; LANES],
-        };
-        AlongLift { ln_drag, learnt }
+        let learnt = each(&slopes_of_learnt, lift, |slope, lift| slope * lift);
+        (found, AlongLift { ln_drag, learnt })
     }
 
     #[expect(clippy::inline_always, reason = "as above")]

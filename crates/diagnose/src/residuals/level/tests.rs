@@ -31,7 +31,7 @@ fn the_same_whatever_the_width_of_vectors() {
     model.base().level_blocks(flights, |from, block| {
         let wide = whole.answers(block, LevelQuestion::MeansAndVariances);
         let compute = Compute { model: &whole, block, of_variances: true };
-        let one_by_one = pulp::Simd::vectorize(pulp::Scalar::new(), compute);
+        let one_by_one = pulp::NullaryFnOnce::call(compute);
         for place in (0..block.count).filter(|place| wide.is_known[*place]) {
             known += 1;
             let of = |found: &LevelAnswers| {

@@ -16,11 +16,10 @@ impl Columns {
             let (fields, is_guess) = self.recorded(column, Kind::Mass);
             (self.names[column].sent.clone(), mass_unit(&fields), is_guess)
         };
-        let find = |rule| self.find(rule);
         let gross = self.find(&GROSS).or_else(|| self.find(&TAKE_OFF).filter(|at| self.falls(*at)));
-        let [zero, used] = [&ZERO_FUEL, &USED].map(find);
-        let tanks = find(&GAUGES).or_else(|| find(&COMPUTED_FUEL));
-        let [left, right] = TANKS.each_ref().map(find);
+        let [zero, used] = [&ZERO_FUEL, &USED].map(|rule| self.find(rule));
+        let tanks = self.find(&GAUGES).or_else(|| self.find(&COMPUTED_FUEL));
+        let [left, right] = TANKS.each_ref().map(|rule| self.find(rule));
         let found = [gross, zero, tanks, used];
         let of_engines = self.used_by_engines();
         match found {
@@ -56,7 +55,7 @@ impl Columns {
                     mark(zero.2 || tanks.2)
                 )
             }
-            _ => match (left.zip(right), find(&TAKE_OFF)) {
+            _ => match (left.zip(right), self.find(&TAKE_OFF)) {
                 (Some((left, right)), _) => self.mass_of_two_tanks(left, right, zero.map(amount)),
                 (None, Some(start)) => {
                     let (name, unit, _) = amount(start);
