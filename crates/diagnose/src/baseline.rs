@@ -10,7 +10,7 @@ use crate::baseline::layout::NuisanceLayout;
 use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::priors::{
-    DECK_DEVIATION, REMAINDER_LEVEL_DEVIATION, REMAINDER_PRODUCT_DEVIATION,
+    DECK_DEVIATION, PATH_FORCE_DEVIATION, REMAINDER_LEVEL_DEVIATION, REMAINDER_PRODUCT_DEVIATION,
     REMAINDER_SLOPE_DEVIATION, REMAINDER_SMOOTH_DEVIATION, TAUGHT_SPLIT_DEVIATION,
 };
 use crate::signals::n2_deck::{DECK_TERMS, Deck};
@@ -69,6 +69,9 @@ pub struct BaselineRecord {
     /// Whether the drag table was smooth between its nodes; it was not for older programs.
     #[serde(default)]
     pub(crate) smooth_table: bool,
+    /// Whether the remainder has a term for the force along the path; it had none for older programs.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub(crate) path_force: bool,
     /// Share of the remainder that is thrust, so that N2 answers to it, and not fuel alone; 0 in files of older programs.
     #[serde(default)]
     pub(crate) thrust_share: f64,
@@ -189,6 +192,12 @@ impl Baseline {
         self.parts.outliers
     }
 
+    /// Whether it was asked how much of the force along the path shows in thrust; older programs took all of it.
+    #[must_use]
+    pub const fn has_path_force(&self) -> bool {
+        self.parts.path_force
+    }
+
     /// Inequalities of physics (fuel flow does not fall with mass, nor drag with Mach number in the drag rise) that were in doubt
     /// and to which it is held, and those that its flights speak against, which are left as flights have them.
     #[must_use]
@@ -214,6 +223,12 @@ impl Baseline {
     #[must_use]
     pub const fn gauges(&self) -> Option<&GaugeLevel> {
         self.parts.gauges.as_ref()
+    }
+
+    /// Mean of what of the force along the path shows beyond all of it.
+    pub(crate) fn path_force(&self) -> f64 {
+        let layout = self.layout();
+        self.parts.mean[self.products_end()..layout.remainder.end].iter().sum()
     }
 
     /// What the drag table is between its nodes where this is added to it.
@@ -280,8 +295,13 @@ impl Baseline {
         NuisanceLayout::of_baseline(self.remainder_terms(), self.parts.contrasts, drag)
     }
 
-    /// A level, each variable's slope and smooth function, and a product of every pair.
+    /// A level, each variable's slope and smooth function, a product of every pair, and the force along the path.
     pub(crate) fn remainder_terms(&self) -> usize {
+        self.products_end() + usize::from(self.parts.path_force)
+    }
+
+    /// Where the terms of products end.
+    pub(crate) fn products_end(&self) -> usize {
         let smooth = &self.parts.smooth;
         1 + smooth.iter().map(Smooth::len).sum::<usize>() + pairs(smooth.len())
     }
@@ -313,6 +333,9 @@ impl Baseline {
                 into[at] = a * b;
                 at += 1;
             }
+        }
+        if self.parts.path_force {
+            into[at] = 1.0 - response.drag_over_thrust;
         }
         left
     }
@@ -418,6 +441,9 @@ impl Baseline {
             if index < start {
                 return REMAINDER_SMOOTH_DEVIATION * self.parts.scales[0];
             }
+        }
+        if index >= self.products_end() {
+            return PATH_FORCE_DEVIATION;
         }
         REMAINDER_PRODUCT_DEVIATION * self.parts.scales[1]
     }

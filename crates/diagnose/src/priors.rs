@@ -186,6 +186,9 @@ deciding_numbers! {
         REMAINDER_PRODUCT_DEVIATION: f64 = 0.005, "of fuel flow",
             "prior standard deviation of a product of two variables a length from their middles, before flights scale it",
             OurChoice "Half of that of a function of one variable; the data scale it.";
+        PATH_FORCE_DEVIATION: f64 = 0.5, "of the force along the path",
+            "prior standard deviation of how much of the recorded acceleration and climb does not show in thrust",
+            OurChoice "From all of it to none within two deviations: differences of recorded speeds have noise of their own.";
         SCALE_LN_DEVIATIONS: [f64; 3] = [1.0, 1.0, 2.0], "ln",
             "prior spread of the factors by which flights scale bends, products, and slopes with standing effects and the drag table",
             OurChoice "A factor of e either way: weak; of slopes and drag twice that: a model may be anything from right to a quarter off.";

@@ -32,8 +32,8 @@ use crate::condition_means::ConditionMeans;
 /// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read. Models without a
 /// baseline are written as format 1. 3: factors of the noise multiply what the aircraft file states of flights and of drift, too;
 /// those of format 2 stand for it. 4: a baseline refers to the drag of the guide's rows, where the file has it; models without that drag
-/// are written as format 3 or 1.
-pub const FORMAT: u32 = 4;
+/// are written as format 3 or 1. 5: a baseline has a term for the force along the path.
+pub const FORMAT: u32 = 5;
 
 /// A model, and what it has learnt.
 #[derive(Clone, Debug)]

@@ -86,14 +86,18 @@ impl Baseline {
         self.parts.against_physics = held.against;
     }
 
-    /// Which scale multiplies a column's prior standard deviation: 0 none, that of the level and of effects whose size physics
-    /// knows.
+    /// Which scale multiplies a column's prior standard deviation: 0 none, that of the level, of the force along the path and of
+    /// effects whose size physics knows.
     fn scale_group(&self, column: usize) -> usize {
         let layout = self.layout();
         let standing = layout.standing_effects.clone();
         // How far a model is off says nothing of the Earth.
         let is_known = |column: usize| STANDING_EFFECTS[column - standing.start].id.is_known();
-        if column == 0 || (standing.contains(&column) && is_known(column)) {
+        let path_force = self.products_end()..layout.remainder.end;
+        if column == 0
+            || path_force.contains(&column)
+            || (standing.contains(&column) && is_known(column))
+        {
             return 0;
         }
         if !layout.remainder.contains(&column) {

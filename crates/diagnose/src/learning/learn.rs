@@ -158,6 +158,7 @@ impl Baseline {
             standing_means: vec![0.0; STANDING_EFFECTS.len()],
             standing_variances: Vec::new(),
             smooth_table: true,
+            path_force: true,
             thrust_share: 0.0,
             outliers: 0,
             held_to_physics: 0,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use effects::{BetweenNodes, EffectModel};
+use effects::{BetweenNodes, EffectModel, Response};
 use flight::Segment;
 use flight::effect::EffectId;
-use test_support::fleet::{Background, Planted, Setup, exact_model, fly, typical};
+use test_support::fleet::{Background, Planted, Random, Setup, exact_model, fly, typical};
 
 use super::n2_rows::{GivenThrust, LearntFuelFlow, N2Rows, given_columns};
 use super::rows::ChannelRows;
@@ -230,5 +230,50 @@ fn what_a_remainder_may_be_is_scaled_as_flights_showed() {
     assert_eq!(count(0.03), variables);
     assert_eq!(count(0.02), bending);
     assert_eq!(count(0.015), variables * (variables - 1) / 2);
-    assert_eq!(found.len(), variables + bending + variables * (variables - 1) / 2);
+    // The force along the path: none of it to all of it, whatever flights made of the others.
+    assert_eq!(count(0.5), 1);
+    assert_eq!(found.len(), variables + bending + variables * (variables - 1) / 2 + 1);
+}
+
+fn variance(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64
+}
+
+/// Fuller, Measurement Error Models (1987), equation 1.1.6: the slope along what is recorded with an error is that along the truth times
+/// var truth/(var truth + var error). Errors of the acceleration as large as the acceleration itself take half of it away, and that
+/// is all they do: what is expected of level flight, at Mach numbers that nobody flew too, stays what it was.
+#[test]
+fn errors_of_the_acceleration_weaken_it_and_nothing_else() {
+    // What the fleet's sensors add themselves, m/s².
+    const OWN: f64 = 0.001;
+    let flights = flights_with(None);
+    let recorded: Vec<f64> =
+        flights.iter().flatten().map(|segment| segment.means.acceleration_m_s2).collect();
+    let all = variance(&recorded);
+    let deviation = all.sqrt();
+    let mut noisy = flights.clone();
+    let mut random = Random::new(95, 1);
+    for segment in noisy.iter_mut().flatten() {
+        segment.means.acceleration_m_s2 += random.normal(0.0, deviation);
+    }
+    let learnt = |flights: &[Vec<Segment>]| with_exact_table(flights, |taught, _| taught.clone());
+    let (clean, weakened) = (learnt(&flights), learnt(&noisy));
+    let of_own = -OWN * OWN / all;
+    let of_both = -(OWN * OWN + deviation * deviation) / (all + deviation * deviation);
+    for (taught, expected) in [(&clean, of_own), (&weakened, of_both)] {
+        let found = taught.path_force();
+        assert!((found - expected).abs() < 0.1, "{found} {expected}");
+    }
+    let mut squares = Vec::new();
+    with_exact_table(&flights, |_, data| {
+        for row in &data.segments {
+            for mach in [-0.06, -0.04, -0.02, 0.02].map(|by| row.response.mach + by) {
+                let level = Response { mach, drag_over_thrust: 1.0, ..row.response };
+                squares.push((weakened.mean_at(&level) - clean.mean_at(&level)).powi(2));
+            }
+        }
+    });
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!(rms < 0.004, "{rms}");
 }

@@ -127,6 +127,7 @@ impl WholeModelOfLevels {
                 level_variance: heating_value * heating_value
                     + drift * drift / aircraft.engines().max(1) as f64,
                 mach_exponent: aircraft.tsfc_law().mach_exponent,
+                path_force: baseline.path_force(),
             },
             stated: baseline.interval_factor(),
         })

@@ -34,6 +34,8 @@ const EMPTY_FACTOR: &str = "\n            factor: []";
 const FIRST_FORMAT: u32 = 1;
 /// The format of a baseline that refers to the initial table.
 const FIRST_WITH_FACTORS: u32 = 3;
+/// The format of models with the drag of the guide's rows.
+const FIRST_WITH_GUIDE: u32 = 4;
 /// The format from which on a baseline is one posterior.
 const FIRST_WITH_POSTERIOR: u32 = 2;
 
@@ -213,11 +215,12 @@ fn checksum_of(body: &str) -> String {
 
 fn document_of(model: &ModelFile) -> Document {
     let grid = model.grid();
-    // Formats 2 and 3 differ in the baseline alone.
+    // Formats 2, 3 and 5 differ in the baseline alone.
     let baseline = model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     Document {
         format: match (&model.by_guide, baseline) {
-            (Some(_), _) => FORMAT,
+            (_, Some(baseline)) if baseline.has_path_force() => FORMAT,
+            (Some(_), _) => FIRST_WITH_GUIDE,
             (None, Some(_)) => FIRST_WITH_FACTORS,
             (None, None) => FIRST_FORMAT,
         },

@@ -89,7 +89,7 @@ impl Directions {
     pub(super) fn new(baseline: &Baseline, functions: &Functions, rises: &[usize]) -> Option<Self> {
         let layout = baseline.layout();
         let of_functions = functions.places();
-        let products = of_functions.last().map_or(1, |range| range.end)..layout.remainder.end;
+        let products = of_functions.last().map_or(1, |range| range.end)..baseline.products_end();
         let standing = layout.standing_effects.start;
         let mut by_terms: Vec<usize> = (0..of_functions.len()).collect();
         by_terms.sort_by_key(|function| of_functions[*function].len());

@@ -29,6 +29,8 @@ pub(super) struct Noise {
     pub(super) level_variance: f64,
     /// Exponent of 1 + M in the TSFC law.
     pub(super) mach_exponent: f64,
+    /// What of the force along the path shows beyond all of it.
+    pub(super) path_force: f64,
 }
 
 /// The points, and what the model makes of them.
@@ -105,14 +107,14 @@ impl Noise {
         variance
     }
 
-    /// With e and l the slopes of ln drag and of what was learnt of it along ln lift, r those of the remainder, p that of ln pressure
-    /// along the altitude, lift and dynamic pressure being inversely proportional:
+    /// With e and l the slopes of ln drag and of what was learnt of it along ln lift, r those of the remainder, g its mean for the
+    /// force along the path, p the slope of ln pressure along the altitude, lift and dynamic pressure being inversely proportional:
     ///
     /// ```text
     /// ln mass       e + l + r_lift + r_thrust·e + r_mass
     /// altitude      p·(1 − e − l − r_lift − r_thrust·e) + r_altitude − r_isa·dT/dh
     /// SAT           ½/T + r_isa           density falls and airspeed rises so that lift and drag stay
-    /// acceleration  m/D·(1 + r_thrust − learnt)      drag stays; what is learnt of it counts by its share of thrust
+    /// acceleration  m/D·(1 + r_thrust − learnt + g)  drag stays; what is learnt of it counts by its share of thrust
     /// ```
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
@@ -126,6 +128,7 @@ impl Noise {
             ln_mass: none,
             acceleration_m_s2: none,
         };
+        let shown = 1.0 + self.path_force;
         for place in 0..LANES {
             let (e, thrust) = (along_lift.ln_drag[place], slopes.ln_thrust[place]);
             let of_lift = e + along_lift.learnt[place] + slopes.ln_lift[place] + thrust * e;
@@ -137,7 +140,7 @@ impl Noise {
                 pressure * (1.0 - of_lift) + slopes.pressure_altitude_m[place] - isa * standard_k_m;
             let drag_n = block.dynamic_force_n[place] * drag.coefficient[place];
             along.acceleration_m_s2[place] =
-                states.mass_kg[place] / drag_n * (1.0 + thrust - drag.learnt[place]);
+                states.mass_kg[place] / drag_n * (shown + thrust - drag.learnt[place]);
         }
         along
     }
