@@ -209,7 +209,7 @@ impl Group<'_> {
         let learnt = self.model.learnt.as_ref();
         if learnt.is_none_or(|learnt| learnt.baseline.is_none()) && !asked.table_only {
             run_notes.push(
-                "the model has learnt no remainder (law bayes learns one from five flights with segments inside the table): \
+                "the model has learnt no remainder (law bayes learns one from three flights with segments inside the table): \
                  everything that a table cannot hold counts as gap; adapt it to more flights first"
                     .to_owned(),
             );

@@ -45,7 +45,7 @@ impl Baseline {
     /// 2^(−age/half-life).
     ///
     /// # Errors
-    /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
+    /// [`DiagnoseError`] where the model takes no effects, or fewer than three flights are inside the table.
     pub fn learn(
         model: &ExtendedModel,
         drag_table: &lut::Table,

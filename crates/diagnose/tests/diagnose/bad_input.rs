@@ -154,8 +154,8 @@ fn a_baseline_wants_flights_and_reads_back_to_the_same_bits() {
     let model = exact_model();
     let fleet = fly(12, &Setup { flights: 20, ..Setup::default() }, &[], &Background::default());
     let records = records(&fleet);
-    let error = Baseline::learn(&model, model.drag_table(), None, &records[..4], None).unwrap_err();
-    assert_eq!(error, DiagnoseError::TooFewFlights { found: 4, needed: 5 });
+    let error = Baseline::learn(&model, model.drag_table(), None, &records[..2], None).unwrap_err();
+    assert_eq!(error, DiagnoseError::TooFewFlights { found: 2, needed: 3 });
     let taught = Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap();
     let text = ron::to_string(taught.record()).unwrap();
     let read = |text: &str| {
