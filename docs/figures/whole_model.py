@@ -163,7 +163,7 @@ def virtual(run, first, count, floor):
         if floor:
             plans = [run.work / f"fleet-{number}-{seed}.ron" for seed in range(first, first + count)]
             print(f"| {words} | oracle | | {spread(floors(floor, plans))} | | |", flush=True)
-        for taught in (1, 2, 5, 10, 20, 40):
+        for taught in (1, 2, 3, 4, 5, 10, 20, 40):
             all_found = [judged(run, model, reports, reports[-30:], taught)[1] for reports in fleets]
             means = [found["mean"] for found in all_found]
             squares = statistics.mean(found["mean"] ** 2 + found["std"] ** 2 for found in all_found)

@@ -227,8 +227,7 @@ impl Baseline {
 
     /// Mean of what of the force along the path shows beyond all of it.
     pub(crate) fn path_force(&self) -> f64 {
-        let layout = self.layout();
-        self.parts.mean[self.products_end()..layout.remainder.end].iter().sum()
+        if self.parts.path_force { self.parts.mean[self.products_end()] } else { 0.0 }
     }
 
     /// What the drag table is between its nodes where this is added to it.

@@ -93,11 +93,7 @@ impl Baseline {
         let standing = layout.standing_effects.clone();
         // How far a model is off says nothing of the Earth.
         let is_known = |column: usize| STANDING_EFFECTS[column - standing.start].id.is_known();
-        let path_force = self.products_end()..layout.remainder.end;
-        if column == 0
-            || path_force.contains(&column)
-            || (standing.contains(&column) && is_known(column))
-        {
+        if column == 0 || (standing.contains(&column) && is_known(column)) {
             return 0;
         }
         if !layout.remainder.contains(&column) {
@@ -113,7 +109,7 @@ impl Baseline {
                 return 1;
             }
         }
-        2
+        if column < self.products_end() { 2 } else { 0 }
     }
 
     pub(super) fn set_noise(&mut self, kind: usize, of: &LearntChannel) {

@@ -18,7 +18,7 @@ const PAPER: &str = include_str!("../../../../fixtures/global5000/expected/SIM-0
 const MEAN_TOLERANCE: f64 = 1e-9;
 const DEVIATION_TOLERANCE: f64 = 1e-5;
 
-/// The step in altitude by which single predictions differentiate.
+/// The step in altitude by which single predictions differentiate: `ALTITUDE_STEP_M` of `diagnose`, which is its own.
 const SINGLE_ALTITUDE_STEP_M: f64 = 1e-3;
 
 fn points() -> Vec<FlightPoint> {
