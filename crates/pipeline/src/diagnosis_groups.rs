@@ -206,8 +206,8 @@ impl Group<'_> {
 
     fn run_notes(&self, asked: &RunOptions) -> Vec<String> {
         let mut run_notes = asked.restrictions();
-        let learnt = self.model.learnt.as_ref();
-        if learnt.is_none_or(|learnt| learnt.baseline.is_none()) && !asked.table_only {
+        if !self.model.has_whole_model() && !asked.table_only {
+            run_notes.extend(self.note_of_guide());
             run_notes.push(
                 "the model has learnt no remainder (law bayes learns one from three flights with segments inside the table): \
                  everything that a table cannot hold counts as gap; adapt it to more flights first"
@@ -221,6 +221,24 @@ impl Group<'_> {
             }
         }
         run_notes
+    }
+
+    /// Which drag a model is held against that has learnt nothing, where it is not that of its predictions.
+    fn note_of_guide(&self) -> Option<String> {
+        let by_guide =
+            self.model.by_guide.as_ref().filter(|_| !self.model.has_learnt_segments())?;
+        let (polynomial, rows) = (self.model.initial.drag_table(), by_guide.drag_table());
+        let extrapolated = self.model.initial.extrapolated();
+        let squares: Vec<f64> = (0..polynomial.grid().nodes())
+            .filter(|&node| !extrapolated[node])
+            .map(|node| (polynomial.value_at_node(node) / rows.value_at_node(node) - 1.0).powi(2))
+            .collect();
+        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+        Some(format!(
+            "flights are held against the drag of the guide's rows; the polynomial, by which predict and evaluate go until flights are \
+             learnt, is {:.1} % off these (rms over the guide's range)",
+            100.0 * mean.sqrt()
+        ))
     }
 
     fn compared(&self) -> Compared {

@@ -25,12 +25,12 @@ pub fn of_model(
     predicts: Predicts,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
-    let has_whole_model = model.learnt.as_ref().is_some_and(|learnt| learnt.baseline.is_some());
+    let has_whole_model = model.has_whole_model();
     // What was learnt together with the table has its uncertainty too.
     if has_whole_model && predicts == Predicts::WholeModel {
         return Ok(None);
     }
-    let (initial, table) = (&model.initial, model.drag_coefficient());
+    let (initial, table) = model.held_against(predicts);
     let settings = model.settings.bayes;
     let belief = Belief { model: initial, settings, guide: Some(&model.guide) };
     let is_exact = initial.aircraft().table_uncertainty_percent() == Some(0.0);
@@ -46,14 +46,15 @@ pub fn of_model(
 }
 
 /// What is believed of a guide's drag before any flight: the prior of law `bayes`, its size scaled to what the aircraft file
-/// states, and what the polynomial lost of the guide; `None` where the file states 0.
+/// states, and what the polynomial lost of the guide, where that is given; `None` where the file states 0.
 ///
 /// ```text
 /// C = C_bayes + ε²/J·Σ_j r_j r_jᵀ/(CD CDᵀ),   ε rms of the guide beside the polynomial, r_j the J shapes of [diagnosis.59]
 /// ```
 ///
 /// Law `bayes` believes in corrections that bend little. Where a guide has a drag rise, its six-coefficient polynomial is off by
-/// what bends most: without this belief such a table is taken for scatter between flights, or for an effect beside it.
+/// what bends most: without this belief such a table is taken for scatter between flights, or for an effect beside it. The nodes that
+/// the guide's own rows make keep most of the rise; what they lose too is of these shapes, and at most as large.
 ///
 /// # Errors
 /// A covariance that is invalid: a table whose drag is not positive, or settings that make none.

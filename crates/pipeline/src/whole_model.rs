@@ -38,13 +38,19 @@ impl ModelFile {
     }
 
     /// The model and the table that flights are held against together with what the model has learnt: what everything learnt refers
-    /// to; the initial model with the learnt table where there is nothing else.
+    /// to, which before any flight is what the guide's rows say; the initial model with the learnt table where there is nothing else.
     pub fn held_against(&self, predicts: Predicts) -> (&ExtendedModel, &Table) {
-        let baseline = self.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
-        match baseline.filter(|_| predicts == Predicts::WholeModel) {
-            Some(_) => (self.reference(), self.reference().drag_table()),
-            None => (&self.initial, self.drag_coefficient()),
+        let has_table_alone = self.has_learnt_segments() && !self.has_whole_model();
+        if has_table_alone || predicts == Predicts::TableOnly {
+            (&self.initial, self.drag_coefficient())
+        } else {
+            (self.reference(), self.reference().drag_table())
         }
+    }
+
+    /// Whether more than a table was learnt.
+    pub fn has_whole_model(&self) -> bool {
+        self.learnt.as_ref().is_some_and(|learnt| learnt.baseline.is_some())
     }
 }
 

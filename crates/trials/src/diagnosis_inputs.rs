@@ -10,10 +10,10 @@ use flight::Segment;
 use flight::effect::EffectId;
 use lut::Table;
 use pipeline::learning::{self, FlightToLearn, LawChoice};
-use pipeline::model_file::{GuideRecord, LawState, LedgerEntry};
+use pipeline::model_file::{LawState, LedgerEntry, ModelFile};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
-use pipeline::whole_model::ln_gap_of;
+use pipeline::whole_model::{Predicts, ln_gap_of};
 use segmenter::TrimCriteria;
 use simulate::Scatter;
 use simulate::study::DragError;
@@ -58,12 +58,9 @@ impl DiagnosisInputs {
             }
             ReferenceModel::Initial => {
                 let book = model(stated, &COARSE, Some(drawn.book_error()))?;
-                Self::of_book(book, None, flights)
+                Self::of_book(book, flights)
             }
-            ReferenceModel::Guide => {
-                let model = model_of_guide(drawn, stated)?;
-                Self::of_book(model.initial, Some(&model.guide), flights)
-            }
+            ReferenceModel::Guide => Self::of_guide(&model_of_guide(drawn, stated)?, flights),
             ReferenceModel::Adapted => {
                 let training_flights = fly(drawn.training_flights(), 0..clean)?;
                 let initial = model(stated, &COARSE, Some(&DragError::study()))?;
@@ -78,17 +75,21 @@ impl DiagnosisInputs {
         Self { model, drag_table, baseline: None, uncertainty: None, flights }
     }
 
-    /// A model that no flight has taught, with what law `bayes` believes of a guide's drag and what the polynomial lost of this one.
-    fn of_book(
-        book: ExtendedModel,
-        guide: Option<&GuideRecord>,
-        flights: Vec<ReducedFlight>,
-    ) -> Result<Self, CaseFailure> {
+    /// A table that no flight has taught, with what law `bayes` believes of a guide's drag.
+    fn of_book(book: ExtendedModel, flights: Vec<ReducedFlight>) -> Result<Self, CaseFailure> {
         let settings = adapt::bayes::BayesSettings::physical_2026();
         let table = book.drag_table();
         let uncertainty =
-            table_uncertainty::of_book(&book, table, settings, guide, &records(&flights))?;
+            table_uncertainty::of_book(&book, table, settings, None, &records(&flights))?;
         Ok(Self { uncertainty, ..Self::untaught(book, flights) })
+    }
+
+    /// What `init` makes of a guide.
+    fn of_guide(model: &ModelFile, flights: Vec<ReducedFlight>) -> Result<Self, CaseFailure> {
+        let whole = Predicts::WholeModel;
+        let uncertainty = table_uncertainty::of_model(model, whole, &records(&flights))?;
+        let (held_against, _) = model.held_against(whole);
+        Ok(Self { uncertainty, ..Self::untaught(held_against.clone(), flights) })
     }
 
     /// The diagnosis, with these effects struck from the library.

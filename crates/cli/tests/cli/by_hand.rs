@@ -1,5 +1,6 @@
 //! Results of commands against the same computed here from what goes into them.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use pipeline::model_file::ModelFile;
@@ -83,4 +84,103 @@ fn evaluate_by_a_learnt_table() {
         // Law paper leaves nodes alone that no segment touched; somewhere both have learnt.
         assert!(moved > 5e-3, "law {law} has learnt little here: {moved}");
     }
+}
+
+/// Fuel flow of both engines, kg/s, level and without acceleration in the lower stratosphere: drag with a rise that no polynomial of
+/// six coefficients holds (Lock's fourth power), the fixture's law of TSFC.
+fn fuel_flow_kg_s(mass_kg: f64, pressure_altitude_m: f64, mach: f64) -> f64 {
+    let force_n = 0.7 * pressure_pa(pressure_altitude_m) * mach.powi(2) * WING_AREA_M2;
+    let lift = mass_kg * STANDARD_GRAVITY_M_S2 / force_n;
+    let drag = 0.018 + 0.05 * lift.powi(2) + 30.0 * (mach - 0.76).max(0.0).powi(4);
+    let tsfc = 0.657 * 0.45359237 / (4.4482216152605 * 3600.0) * (216.65_f64 / 288.15).sqrt();
+    force_n * drag * tsfc
+}
+
+/// TAS in kt at 216.65 K, where sound goes 295.07 m/s.
+fn true_airspeed_kt(mach: f64) -> f64 {
+    mach * 295.069_5 / 0.514_444_4
+}
+
+const FOOT_M: f64 = 0.3048;
+
+/// Rows of fuel flow as a planner has them.
+fn guide_by_hand() -> String {
+    let mut rows = String::from("mass_kg,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n");
+    for level_ft in [37_000.0, 39_000.0, 41_000.0] {
+        for heavier in 0..6 {
+            for hundredths in (70..=86).step_by(2) {
+                let (mass, mach) =
+                    (24_000.0 + 3_200.0 * f64::from(heavier), f64::from(hundredths) / 100.0);
+                let flow = fuel_flow_kg_s(mass, level_ft * FOOT_M, mach) * 3600.0 / 0.45359237;
+                let speed = true_airspeed_kt(mach);
+                writeln!(rows, "{mass},{level_ft},{speed:.3},{flow:.2}").unwrap();
+            }
+        }
+    }
+    rows
+}
+
+/// A flight that burns what the guide says.
+fn report_by_hand(number: u32) -> String {
+    let level_ft = 37_000.0 + 2_000.0 * f64::from(number % 3);
+    let mach = 0.77 + 0.01 * f64::from(number * 5 % 8);
+    let (zero_fuel_kg, mut fuel_kg) = (22_000.0 + 900.0 * f64::from(number * 3 % 7), 9_000.0);
+    let mut text = format!(
+        "CRUISE-REPORT 1\nAIRCRAFT global5000\nTAIL BOOK\nFLIGHT {number:04}\nSTART 2024-02-{:02}T06:00:00Z\nZFW {zero_fuel_kg} kg\n\
+         FOB {fuel_kg} kg\nMISSING N2 ROLL DRIFT\nTIME ALT SAT MACH VTAS GSPD WF(1) WF(2) FU\ns ft degC - kt kt kg/h kg/h kg\n",
+        1 + number
+    );
+    for minute in 0..120 {
+        let flow = fuel_flow_kg_s(zero_fuel_kg + fuel_kg, level_ft * FOOT_M, mach);
+        let (speed, each) = (true_airspeed_kt(mach), 1800.0 * flow);
+        writeln!(
+            text,
+            "{} {level_ft} -56.50 {mach:.4} {speed:.2} {speed:.2} {each:.2} {each:.2} {:.2}",
+            60 * minute,
+            9_000.0 - fuel_kg
+        )
+        .unwrap();
+        fuel_kg -= 60.0 * flow;
+    }
+    text
+}
+
+/// An aircraft that burns what its guide says has no gap, whatever the polynomial through the guide's rows loses of a drag rise; the
+/// polynomial itself has one.
+#[test]
+fn who_burns_the_guide_has_no_gap() {
+    let scratch = tempfile::tempdir().unwrap();
+    let at = |name: &str| scratch.path().join(name);
+    std::fs::write(at("guide.csv"), guide_by_hand()).unwrap();
+    std::fs::create_dir(at("reports")).unwrap();
+    for number in 1..=12 {
+        std::fs::write(at(&format!("reports/{number:04}.txt")), report_by_hand(number)).unwrap();
+    }
+    let text = |name: &str| at(name).to_str().unwrap().to_owned();
+    // Cells in which the rise is nearly straight.
+    let aircraft = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
+    let (coarse, fine) = ("mach: (0.50, 0.95, 0.05)", "mach: (0.68, 0.88, 0.02)");
+    assert!(aircraft.contains(coarse));
+    std::fs::write(at("AIRCRAFT.ron"), aircraft.replace(coarse, fine)).unwrap();
+    let (aircraft, guide, model) = (text("AIRCRAFT.ron"), text("guide.csv"), text("MODEL.ron"));
+    cruisefit(&["init", "--aircraft", &aircraft, "--guide", &guide, "-o", &model]).expect(0);
+    let diagnosed = |more: &[&str]| {
+        let (reports, output) = (text("reports"), text("found"));
+        let words = ["diagnose", &reports, "--model", &model, "-o", &output];
+        cruisefit(&[&words, more].concat()).expect(0);
+        let document = std::fs::read(at("found/diagnosis.json")).unwrap();
+        let document: serde_json::Value = serde_json::from_slice(&document).unwrap();
+        document["diagnoses"][0].clone()
+    };
+    let by_rows = diagnosed(&[]);
+    let rms = |found: &serde_json::Value| found["gap"]["rms_percent"].as_f64().unwrap();
+    assert_eq!(by_rows["verdict"]["kind"], "no_gap", "{by_rows}");
+    let by_polynomial = diagnosed(&["--table-only"]);
+    assert_eq!(by_polynomial["verdict"]["effects"][0], "drag_table", "{by_polynomial}");
+    assert!(
+        rms(&by_rows) < 0.3 && rms(&by_polynomial) > 1.0,
+        "{} {}",
+        rms(&by_rows),
+        rms(&by_polynomial)
+    );
 }

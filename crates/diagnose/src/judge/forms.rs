@@ -7,7 +7,7 @@ use units::convert::STANDARD_GRAVITY_M_S2;
 use crate::hypotheses::design::Acts;
 use crate::hypotheses::evidence::Scorer;
 use crate::judge::closure::Shrinkage;
-use crate::judge::forms::dictionary::{Candidate, Values, candidates, finer};
+use crate::judge::forms::dictionary::{Candidate, Values, candidates, finer, finest};
 use crate::math::eliminate::Changed;
 use crate::math::mixture::ln_sum;
 use crate::output::form::{ActsOn, FoundForm};
@@ -64,14 +64,17 @@ fn forms(
         .map(|kind| {
             let one = &fits.candidates[kind.best];
             let of = &values[one.variable];
-            let (size, deviation) = fits.size(kind.best);
             let unseen = unseen(system, scorer, (&values, one), noise_scale, seed);
+            // What is told is the best of a third grid: an addition that is applied is to leave nothing by its own steps.
+            let told = Fits::new(system, scorer, &values, finest(&values, one), None);
+            let (best, told) = told.as_ref().map_or((kind.best, &fits), |told| (told.best(), told));
+            let (size, deviation) = told.size(best);
             FoundForm {
-                form: one.form,
+                form: told.candidates[best].form,
                 variable: of.variable,
                 acts_on: if of.acts == Acts::Thrust { ActsOn::Thrust } else { ActsOn::FuelFlow },
                 size,
-                rms_percent: fits.rms_percent(kind.best),
+                rms_percent: told.rms_percent(best),
                 size_ci95: [size - NORMAL_95 * deviation, size + NORMAL_95 * deviation],
                 place_ci95: fits.places(kind),
                 scale: [of.mean, of.deviation],
@@ -178,6 +181,11 @@ impl Fits {
         }
         kinds.sort_by(|a, b| b.ln.total_cmp(&a.ln));
         kinds
+    }
+
+    /// The most probable candidate.
+    fn best(&self) -> usize {
+        (0..self.ln.len()).max_by(|&a, &b| self.ln[a].total_cmp(&self.ln[b])).unwrap_or(0)
     }
 
     /// Size of a candidate in its own unit, with its standard deviation.

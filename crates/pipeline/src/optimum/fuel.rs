@@ -97,9 +97,11 @@ impl<'a> OptimumModel<'a> {
                 (0..draws).map(|_| posterior.drawn(&numbers(nodes))).collect()
             }))
         };
+        // Before it has learnt, a model predicts by its polynomial, and is its own book.
+        let book = if model.has_whole_model() { model.reference() } else { &model.initial };
         Ok(Self {
             own: model.current()?,
-            book: model.held_against(Predicts::WholeModel).0.drag_table().clone(),
+            book: book.drag_table().clone(),
             learnt,
             informed_by_flights: model
                 .learnt

@@ -6,8 +6,11 @@ use crate::hypotheses::design::Acts;
 use crate::math::quantile::{QuantileType, quantile};
 use crate::priors::{FORM_EXPONENTS, FORM_PLACES, FORM_WIDTHS};
 
-/// Steps on either side of a place or width in the closer grid.
+/// Steps on either side of a place in a closer grid.
 const FINER: i32 = 4;
+/// Factors of a width in the closer grid, and in the one about its best.
+const FINER_WIDTHS: [f64; 5] = [0.5, 0.7, 1.0, 1.4, 2.0];
+const FINEST_WIDTHS: [f64; 5] = [0.84, 0.92, 1.0, 1.09, 1.19];
 
 /// A variable over the segments, and what a function of it acts on.
 #[derive(Clone, Debug)]
@@ -105,13 +108,33 @@ pub(crate) fn candidates(values: &[Values]) -> Vec<Candidate> {
 
 /// A closer grid about one candidate: places and widths between the neighbours that were tried.
 pub(crate) fn finer(values: &[Values], one: &Candidate) -> Vec<Candidate> {
-    let of = &values[one.variable];
-    let reach = (of.quantile(0.95) - of.quantile(0.05)) / FORM_PLACES as f64;
+    let forms =
+        closer(one.form, reach(&values[one.variable]), FINER_WIDTHS, [-0.5, -0.25, 0.0, 0.25, 0.5]);
+    // The closer grid covers what one step of the coarse one stood for, and its neighbours.
+    let steps = forms.len() as f64;
+    let ln_prior = one.ln_prior + if steps > 1.0 { (2.0 / steps).ln() } else { 0.0 };
+    forms.into_iter().map(|form| Candidate { form, ln_prior, ..*one }).collect()
+}
+
+/// The same about a candidate of the closer grid, each as probable as that one: they stand for it, for the best of them to be told.
+pub(crate) fn finest(values: &[Values], one: &Candidate) -> Vec<Candidate> {
+    let reach = reach(&values[one.variable]) / f64::from(FINER);
+    let forms = closer(one.form, reach, FINEST_WIDTHS, [-0.12, -0.06, 0.0, 0.06, 0.12]);
+    forms.into_iter().map(|form| Candidate { form, ..*one }).collect()
+}
+
+/// How far apart the places of the coarse grid are, in the mean.
+fn reach(of: &Values) -> f64 {
+    (of.quantile(0.95) - of.quantile(0.05)) / FORM_PLACES as f64
+}
+
+/// Forms about one: places within `reach`, widths by factors, exponents by steps.
+fn closer(one: Form, reach: f64, by: [f64; 5], steps: [f64; 5]) -> Vec<Form> {
     let places = |middle: f64| {
         (-FINER..=FINER).map(move |step| middle + reach * f64::from(step) / f64::from(FINER))
     };
-    let widths = |width: f64| [0.5, 0.7, 1.0, 1.4, 2.0].map(|by| by * width);
-    let forms: Vec<Form> = match one.form {
+    let widths = |width: f64| by.map(|by| by * width);
+    match one {
         Form::HingeAbove { from } => places(from).map(|from| Form::HingeAbove { from }).collect(),
         Form::HingeBelow { to } => places(to).map(|to| Form::HingeBelow { to }).collect(),
         Form::Step { from } => places(from).map(|from| Form::Step { from }).collect(),
@@ -122,14 +145,10 @@ pub(crate) fn finer(values: &[Values], one: &Candidate) -> Vec<Candidate> {
             .flat_map(|middle| widths(width).map(|width| Form::Bump { middle, width }))
             .collect(),
         Form::Power { exponent } => {
-            [-0.5, -0.25, 0.0, 0.25, 0.5].map(|by| Form::Power { exponent: exponent + by }).to_vec()
+            steps.map(|by| Form::Power { exponent: exponent + by }).to_vec()
         }
         form => vec![form],
-    };
-    // The closer grid covers what one step of the coarse one stood for, and its neighbours.
-    let steps = forms.len() as f64;
-    let ln_prior = one.ln_prior + if steps > 1.0 { (2.0 / steps).ln() } else { 0.0 };
-    forms.into_iter().map(|form| Candidate { form, ln_prior, ..*one }).collect()
+    }
 }
 
 /// Forms of a variable, kind by kind.
