@@ -38,6 +38,7 @@ const FAR_FROM_PREDICT_PERCENT: f64 = 0.5;
 pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     check_endings(&arguments.output)?;
     let file = read_model(&arguments.model)?;
+    let file = file.to_plan_with();
     let model = OptimumModel::new(&file, DRAWS, SEED)
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;
     let masses = match &arguments.mass_kg[..] {
@@ -85,7 +86,9 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     let highest = optimum::highest_known_level(&file).map(PressureAltitude::to_feet);
     let mut text = optimum::table(&conditions, highest);
     if file.learnt.is_none() {
-        text.push_str("The model has learnt nothing: it is the book itself.\n");
+        text.push_str(
+            "The model has learnt nothing: it is the book itself, the drag of its guide's rows.\n",
+        );
     } else if file.posterior().is_none() {
         text.push_str(
             "Law paper does not say how well it knows its table: there are no intervals.\n",

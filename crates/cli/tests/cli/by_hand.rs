@@ -1,7 +1,7 @@
 //! Results of commands against the same computed here from what goes into them.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pipeline::model_file::ModelFile;
 
@@ -120,6 +120,19 @@ fn guide_by_hand() -> String {
     rows
 }
 
+/// The model that `init` makes of it, with cells in which the rise is nearly straight.
+fn initial_model_by_hand(folder: &Path) -> String {
+    let text = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (aircraft, guide, model) = (text("AIRCRAFT.ron"), text("guide.csv"), text("MODEL.ron"));
+    let of_fixture = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
+    let (coarse, fine) = ("mach: (0.50, 0.95, 0.05)", "mach: (0.68, 0.88, 0.02)");
+    assert!(of_fixture.contains(coarse));
+    std::fs::write(&aircraft, of_fixture.replace(coarse, fine)).unwrap();
+    std::fs::write(&guide, guide_by_hand()).unwrap();
+    cruisefit(&["init", "--aircraft", &aircraft, "--guide", &guide, "-o", &model]).expect(0);
+    model
+}
+
 /// A flight that burns what the guide says.
 fn report_by_hand(number: u32) -> String {
     let level_ft = 37_000.0 + 2_000.0 * f64::from(number % 3);
@@ -151,19 +164,12 @@ fn report_by_hand(number: u32) -> String {
 fn who_burns_the_guide_has_no_gap() {
     let scratch = tempfile::tempdir().unwrap();
     let at = |name: &str| scratch.path().join(name);
-    std::fs::write(at("guide.csv"), guide_by_hand()).unwrap();
     std::fs::create_dir(at("reports")).unwrap();
     for number in 1..=12 {
         std::fs::write(at(&format!("reports/{number:04}.txt")), report_by_hand(number)).unwrap();
     }
     let text = |name: &str| at(name).to_str().unwrap().to_owned();
-    // Cells in which the rise is nearly straight.
-    let aircraft = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
-    let (coarse, fine) = ("mach: (0.50, 0.95, 0.05)", "mach: (0.68, 0.88, 0.02)");
-    assert!(aircraft.contains(coarse));
-    std::fs::write(at("AIRCRAFT.ron"), aircraft.replace(coarse, fine)).unwrap();
-    let (aircraft, guide, model) = (text("AIRCRAFT.ron"), text("guide.csv"), text("MODEL.ron"));
-    cruisefit(&["init", "--aircraft", &aircraft, "--guide", &guide, "-o", &model]).expect(0);
+    let model = initial_model_by_hand(scratch.path());
     let diagnosed = |more: &[&str]| {
         let (reports, output) = (text("reports"), text("found"));
         let words = ["diagnose", &reports, "--model", &model, "-o", &output];
@@ -183,4 +189,31 @@ fn who_burns_the_guide_has_no_gap() {
         rms(&by_rows),
         rms(&by_polynomial)
     );
+}
+
+/// Before any flight the guide's own optimum is advised: the Mach number with the greatest V/Wf, found by trying every thousandth.
+#[test]
+fn an_untaught_optimum_is_that_of_the_guide() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model_by_hand(scratch.path());
+    let output = scratch.path().join("optimum.csv");
+    let masses = "28000,31000,34000";
+    let asked = ["--levels", "37000,39000,41000", "--mass-kg", masses, "-o"];
+    let words = [&["optimum", "--model", &model], &asked[..], &[output.to_str().unwrap()]];
+    cruisefit(&words.concat()).expect(0);
+    let found = csv_columns(&output);
+    let of = |name: &str| numbers(&found, name);
+    let (mass, level_ft, mach) = (of("mass_kg"), of("pressure_altitude_ft"), of("mach"));
+    let mut judged = 0;
+    for k in (0..mach.len()).filter(|&k| found["kind"][k] == "maximum_range") {
+        let range = |thousandths: u32| {
+            let mach = f64::from(thousandths) / 1000.0;
+            mach / fuel_flow_kg_s(mass[k], level_ft[k] * FOOT_M, mach)
+        };
+        let best = (700..=860).max_by(|&a, &b| range(a).total_cmp(&range(b))).unwrap();
+        let off = mach[k] - f64::from(best) / 1000.0;
+        assert!(off.abs() <= 0.005, "{} kg at {} ft: {off} off {best}", mass[k], level_ft[k]);
+        judged += 1;
+    }
+    assert_eq!(judged, 9);
 }

@@ -220,6 +220,7 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
     named.sort_by(|a, b| of(b).total_cmp(&of(a)));
     let mut beside: Vec<Beside> = Vec::new();
     let mut found = Vec::new();
+    let mut tops = Vec::new();
     for top in &named {
         let effect = id_of(library, top.effect);
         if beside.iter().any(|other| other.class.contains(&effect)) {
@@ -235,7 +236,13 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
         if acts * inside > MORE_PROBABLE_THAN_NOT {
             found.extend(separations(findings.advisor, library, top, &class));
             beside.push(Beside { effect, class, probability: of(top) * inside });
+            tops.push(*top);
         }
+    }
+    for (place, top) in tops.into_iter().enumerate() {
+        let left_open = left_open_beside(findings, top, &beside);
+        let open = left_open.into_iter().filter(|id| !held(id));
+        beside[place].class.extend(open);
     }
     let mut effects = vec![EffectId::DragTable];
     let mut class = table.class.clone();
@@ -257,6 +264,40 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
         rest: None,
         separations: found,
     }
+}
+
+/// What the evidence leaves open of an effect beside a table, and no class has: what differs from it by less than laws may; and where
+/// it is the only one, the most probable that hold 95 % of all that acts.
+fn left_open_beside(findings: &Findings<'_>, top: &Posterior, beside: &[Beside]) -> Vec<EffectId> {
+    let &Findings { analysis, library, distances, posteriors, table, .. } = findings;
+    let is_new = |id: &EffectId| !beside.iter().any(|other| other.class.contains(id));
+    let alike = top
+        .column_and_size()
+        .map_or_else(Vec::new, |(column, size)| distances.alike_in_form(library, column, size));
+    let alike = alike.into_iter().map(|effect| library.effects[effect].id);
+    let mut open: Vec<EffectId> = alike.filter(is_new).collect();
+    let [_] = beside else { return open };
+    let present = presence(analysis, library);
+    let mut acting: Vec<(EffectId, f64)> = posteriors
+        .iter()
+        .map(|posterior| (id_of(library, posterior.effect), posterior.effect))
+        .filter(|(id, _)| !table.is_some_and(|table| table.class.contains(id)))
+        .map(|(id, effect)| (id, present[effect.unwrap_or(library.effects.len())]))
+        .collect();
+    acting.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let total: f64 = acting.iter().map(|(_, acts)| acts).sum();
+    let known = acting.iter().filter(|(id, _)| !is_new(id) || open.contains(id));
+    let mut sum: f64 = known.map(|(_, acts)| acts).sum();
+    for (id, acts) in acting {
+        if sum >= CREDIBLE * total {
+            break;
+        }
+        if is_new(&id) && !open.contains(&id) {
+            open.push(id);
+            sum += acts;
+        }
+    }
+    open
 }
 
 /// What these flights cannot tell from a cause, and what their evidence leaves open all the same, however far away that is. What
