@@ -27,3 +27,21 @@ fn what_a_guide_lacks_is_its_table_before_anything_that_a_table_can_hold() {
         assert!(!verdict.effects()[1..].contains(&EffectId::TsfcThrottle), "{number}: {verdict:?}");
     }
 }
+
+/// Each was wrong once: 3 % of one engine's meter was read as the other's with the opposite sign, which beside a level that a table may
+/// have is nearly the same, and the class held both engines' TSFC and not the meter that was off.
+#[test]
+fn beside_a_table_one_engine_high_may_be_the_other_low() {
+    let plan = "(
+        seed: 20263351, parts: [(denied: guide, background: clean, kind: single, repeats: 32)],
+    )";
+    let plan = TrialPlan::from_ron(plan).unwrap();
+    for spec in plan.cases(2).into_iter().filter(|spec| [88, 139].contains(&spec.number)) {
+        let case = DiagnosedCase::run(&plan, &spec).unwrap();
+        let (verdict, number) = (&case.diagnosis().verdict, spec.number);
+        let beside = &verdict.found().unwrap().beside;
+        let holds = |id| beside.iter().any(|beside| beside.class.contains(&id));
+        let meters = [1, 2].map(EffectId::FuelFlowGainEngine);
+        assert!(meters.into_iter().all(holds), "{number}: {verdict:?}");
+    }
+}

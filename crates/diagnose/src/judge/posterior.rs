@@ -194,6 +194,22 @@ pub(crate) fn presence(analysis: &Analysis, library: &Library) -> Vec<f64> {
     present
 }
 
+/// Probability that at least one of these acts, `None` being scatter between flights: two of them together count once.
+pub(crate) fn presence_of_any(
+    analysis: &Analysis,
+    library: &Library,
+    effects: &[Option<usize>],
+) -> f64 {
+    let acts = |scored: &ScoredHypothesis| {
+        let hypothesis = &scored.hypothesis;
+        let mut named =
+            hypothesis.columns.iter().map(|&column| Some(library.columns[column].effect));
+        named.any(|effect| effects.contains(&effect))
+            || (hypothesis.flight_scatter_percent.is_some() && effects.contains(&None))
+    };
+    analysis.models.iter().filter(|(scored, _)| acts(scored)).map(|(_, p)| p).sum()
+}
+
 /// What the list of causes is made from, besides the posteriors.
 pub(crate) struct CauseEvidence<'a> {
     pub(crate) analysis: &'a Analysis,

@@ -7,7 +7,9 @@ use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::pair::{PairEvidence, Partner, companion};
-use crate::judge::posterior::{CauseEvidence, Posterior, class_of, closed_unseen, id_of, presence};
+use crate::judge::posterior::{
+    CauseEvidence, Posterior, class_of, closed_unseen, id_of, presence, presence_of_any,
+};
 use crate::judge::table::TableFinding;
 use crate::library::{Library, Testable};
 use crate::output::measurement::Separation;
@@ -231,8 +233,9 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
         let is_open = |id: &EffectId| {
             class.contains(id) && !beside.iter().any(|other| other.class.contains(id))
         };
-        let in_class = named.iter().filter(|p| is_open(&id_of(library, p.effect)));
-        let acts: f64 = in_class.map(|p| of(p)).sum();
+        let open = named.iter().filter(|p| is_open(&id_of(library, p.effect)));
+        let open: Vec<Option<usize>> = open.map(|p| p.effect).collect();
+        let acts = presence_of_any(findings.analysis, library, &open);
         if acts * inside > MORE_PROBABLE_THAN_NOT {
             found.extend(separations(findings.advisor, library, top, &class));
             beside.push(Beside { effect, class, probability: of(top) * inside });
@@ -285,7 +288,8 @@ fn left_open_beside(findings: &Findings<'_>, top: &Posterior, beside: &[Beside])
         .map(|(id, effect)| (id, present[effect.unwrap_or(library.effects.len())]))
         .collect();
     acting.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let total: f64 = acting.iter().map(|(_, acts)| acts).sum();
+    // What acts in addition, and not instead, makes the sum exceed 1.
+    let total = acting.iter().map(|(_, acts)| acts).sum::<f64>().min(1.0);
     let known = acting.iter().filter(|(id, _)| !is_new(id) || open.contains(id));
     let mut sum: f64 = known.map(|(_, acts)| acts).sum();
     for (id, acts) in acting {
