@@ -10,12 +10,12 @@ use adapt::bayes::{BayesSettings, BayesState};
 use diagnose::{FlightRecord, Input, Options, diagnose};
 use flight::Observation;
 use flight::effect::EffectId;
-use lut::{Grid, Outside, Table};
+use lut::Table;
 use perf_model::{Aircraft, Guide, LevelFlights, PerformanceModel, initial_model};
 use pipeline::reduction::ReducedFlight;
 use segmenter::TrimCriteria;
-use test_support::Random;
 use test_support::fleet::{Background, Setup, exact_model, fly, plant};
+use test_support::{Random, looked_up};
 
 type Outcome = Result<(), Box<dyn Error>>;
 type Kernel = fn() -> Outcome;
@@ -65,20 +65,12 @@ fn counted(work: &mut dyn FnMut()) {
 fn table_lookup() -> Outcome {
     let model = global5000()?;
     let table: &Table = model.drag_table();
-    let grid: &Grid = table.grid();
     let mut random = Random::new(1, 1);
     let points: Vec<(f64, f64)> =
         (0..10_000).map(|_| (random.uniform(0.1, 0.8), random.uniform(0.5, 0.96))).collect();
     let (mut sum, mut inside) = (0.0, 0);
-    counted(&mut || {
-        for &(lift_coefficient, mach) in &points {
-            if let Ok(cell) = grid.locate(lift_coefficient, mach, Outside::Error) {
-                sum += table.interpolate(&cell);
-                inside += 1;
-            }
-        }
-    });
-    assert!(inside > 9_000 && sum / f64::from(inside) > 0.01);
+    counted(&mut || (sum, inside) = looked_up(table, &points));
+    assert!(inside > 9_000 && sum / inside as f64 > 0.01);
     Ok(())
 }
 

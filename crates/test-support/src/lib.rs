@@ -1,6 +1,7 @@
 //! What the tests of several crates share. A development dependency only; never published.
 //!
 //! - [`fleet`]: a virtual fleet on the level of segments, whose truth has other functional forms than the library's.
+//! - [`looked_up`]: lookups in a table, for their instructions to be counted.
 //! - [`reports`]: the format's sample report, and reports made from a few numbers.
 //! - [`outside`]: material that cannot be shipped with the repository, and visible skips where it is absent.
 //!
@@ -17,9 +18,11 @@
 //! ```
 
 pub mod fleet;
+mod lookups;
 pub mod outside;
 mod random;
 pub mod reports;
 
+pub use lookups::looked_up;
 pub use outside::outside_data;
 pub use random::Random;
