@@ -1,5 +1,6 @@
 //! `cruisefit optimum`: what a flight management system would fly with a model, and with the book.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -39,6 +40,7 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     check_endings(&arguments.output)?;
     let file = read_model(&arguments.model)?;
     let file = file.to_plan_with();
+    let is_by_rows = matches!(file, Cow::Owned(_));
     let model = OptimumModel::new(&file, DRAWS, SEED)
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;
     let masses = match &arguments.mass_kg[..] {
@@ -85,10 +87,13 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     }
     let highest = optimum::highest_known_level(&file).map(PressureAltitude::to_feet);
     let mut text = optimum::table(&conditions, highest);
-    if file.learnt.is_none() {
+    if is_by_rows {
         text.push_str(
-            "The model has learnt nothing: it is the book itself, the drag of its guide's rows.\n",
+            "The model has learnt nothing: it is the book itself, the drag of its guide's rows. `predict` goes by the polynomial through \
+             them until flights are learnt.\n",
         );
+    } else if file.learnt.is_none() {
+        text.push_str("The model has learnt nothing: it is the book itself.\n");
     } else if file.posterior().is_none() {
         text.push_str(
             "Law paper does not say how well it knows its table: there are no intervals.\n",
@@ -140,7 +145,7 @@ fn warn_of_surface(file: &ModelFile, conditions: &[ConditionOptimum]) {
         "the nodes of the table are so far apart that the chords of `predict` leave the smooth surface"
     };
     tracing::warn!(
-        "fuel flow at these optima is up to {percent:.2} % from what `predict` states: {why}"
+        "fuel flow at these optima is up to {percent:.2} % from what `predict` states with the same drag: {why}"
     );
 }
 

@@ -67,7 +67,7 @@ fn notes(conditions: &[ConditionOptimum], highest_ft: Option<f64>) -> String {
         let _ = writeln!(
             text,
             "Fuel flow is smooth between the nodes of the table: at these optima, all levels, at most {percent:.2} % from what \
-             `predict` states."
+             `predict` states with the same drag, straight between them."
         );
     }
     text.push_str(&unshown(all().filter_map(|(_, best)| best.saving_ci95)));
