@@ -225,9 +225,8 @@ impl Group<'_> {
 
     /// Which drag a model is held against that has learnt nothing, where it is not that of its predictions.
     fn note_of_guide(&self) -> Option<String> {
-        let by_guide =
-            self.model.by_guide.as_ref().filter(|_| !self.model.has_learnt_segments())?;
-        let (polynomial, rows) = (self.model.initial.drag_table(), by_guide.drag_table());
+        let rows = self.model.untaught_rows()?.drag_table();
+        let polynomial = self.model.initial.drag_table();
         let extrapolated = self.model.initial.extrapolated();
         let squares: Vec<f64> = (0..polynomial.grid().nodes())
             .filter(|&node| !extrapolated[node])

@@ -261,12 +261,17 @@ impl ModelFile {
     /// through them, whose optima are up to 0.03 in Mach number slower or faster at a drag rise.
     #[must_use]
     pub fn to_plan_with(&self) -> Cow<'_, Self> {
-        match &self.by_guide {
-            Some(by_guide) if !self.has_learnt_segments() => {
-                Cow::Owned(Self { initial: (**by_guide).clone(), by_guide: None, ..self.clone() })
+        match self.untaught_rows() {
+            Some(rows) => {
+                Cow::Owned(Self { initial: rows.clone(), by_guide: None, ..self.clone() })
             }
-            _ => Cow::Borrowed(self),
+            None => Cow::Borrowed(self),
         }
+    }
+
+    /// The drag of the guide's rows, where no segment has taught a table and the file keeps it.
+    pub(crate) fn untaught_rows(&self) -> Option<&ExtendedModel> {
+        self.by_guide.as_deref().filter(|_| !self.has_learnt_segments())
     }
 
     /// A model from the text of its file.

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use simulate::{AircraftTruth, Preset, TruthPhysics};
 use units::Mach;
 
-use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
+use crate::support::{
+    adapt, bytes_below, cruisefit, csv_columns, diagnosis_document, fixture, initial_model, numbers,
+};
 
 /// Two tails of one virtual aircraft whose physics is the model's: `NEW`, and `WORN` with TSFC of engine 2 up 3 %.
 /// `FEW` is as worn. Sensors only round; no scatter between flights. Between an engine and its meter then only the recorded
@@ -78,10 +80,7 @@ fn against_truth(folder: &Path) -> [f64; 3] {
 
 /// What a folder's document says of its one tail.
 fn diagnosis(folder: &Path) -> serde_json::Value {
-    let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();
-    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
-    crate::json_schema::assert_held("diagnosis-1.json", &document);
-    document["diagnoses"][0].clone()
+    diagnosis_document(folder)["diagnoses"][0].clone()
 }
 
 fn verdict(folder: &Path) -> serde_json::Value {

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use pipeline::model_file::ModelFile;
 
-use crate::support::{adapt, cruisefit, csv_columns, fixture, initial_model, numbers};
+use crate::support::{
+    adapt, cruisefit, csv_columns, diagnosis_document, fixture, initial_model, numbers,
+};
 
 const WING_AREA_M2: f64 = 94.94690688;
 const STANDARD_GRAVITY_M_S2: f64 = 9.80665;
@@ -14,6 +16,16 @@ const STANDARD_GRAVITY_M_S2: f64 = 9.80665;
 fn pressure_pa(pressure_altitude_m: f64) -> f64 {
     22_632.06
         * (-STANDARD_GRAVITY_M_S2 * (pressure_altitude_m - 11_000.0) / (287.05287 * 216.65)).exp()
+}
+
+/// S·q, q = γ/2·p·M².
+fn surface_force_n(pressure_altitude_m: f64, mach: f64) -> f64 {
+    0.7 * pressure_pa(pressure_altitude_m) * mach.powi(2) * WING_AREA_M2
+}
+
+/// 0.657 lb/(lbf h) at 15 °C; the aircraft's law has no Mach number.
+fn tsfc_kg_n_s(static_air_temperature_k: f64) -> f64 {
+    0.657 * 0.45359237 / (4.4482216152605 * 3600.0) * (static_air_temperature_k / 288.15).sqrt()
 }
 
 /// Bilinear value of the fixture's table: lift coefficient from 0.10, Mach number from 0.50, both by 0.05, ten Mach numbers.
@@ -65,11 +77,9 @@ fn evaluate_by_a_learnt_table() {
         assert!(predicted.len() >= 3, "{}", predicted.len());
         let mut moved = 0.0_f64;
         for k in 0..predicted.len() {
-            // S·q, q = γ/2·p·M².
-            let force_n = 0.7 * pressure_pa(altitude[k]) * mach[k].powi(2) * WING_AREA_M2;
+            let force_n = surface_force_n(altitude[k], mach[k]);
             let lift = mass[k] * STANDARD_GRAVITY_M_S2 / force_n;
-            // 0.657 lb/(lbf h) at 15 °C; the aircraft's law has no Mach number.
-            let tsfc = 0.657 * 0.45359237 / (4.4482216152605 * 3600.0) * (sat_k[k] / 288.15).sqrt();
+            let tsfc = tsfc_kg_n_s(sat_k[k]);
             let by = |table: &[f64]| {
                 let drag_n = force_n * drag_coefficient(table, lift, mach[k]);
                 (drag_n + mass[k] * acceleration[k]) * tsfc
@@ -89,11 +99,10 @@ fn evaluate_by_a_learnt_table() {
 /// Fuel flow of both engines, kg/s, level and without acceleration in the lower stratosphere: drag with a rise that no polynomial of
 /// six coefficients holds (Lock's fourth power), the fixture's law of TSFC.
 fn fuel_flow_kg_s(mass_kg: f64, pressure_altitude_m: f64, mach: f64) -> f64 {
-    let force_n = 0.7 * pressure_pa(pressure_altitude_m) * mach.powi(2) * WING_AREA_M2;
+    let force_n = surface_force_n(pressure_altitude_m, mach);
     let lift = mass_kg * STANDARD_GRAVITY_M_S2 / force_n;
     let drag = 0.018 + 0.05 * lift.powi(2) + 30.0 * (mach - 0.76).max(0.0).powi(4);
-    let tsfc = 0.657 * 0.45359237 / (4.4482216152605 * 3600.0) * (216.65_f64 / 288.15).sqrt();
-    force_n * drag * tsfc
+    force_n * drag * tsfc_kg_n_s(216.65)
 }
 
 /// TAS in kt at 216.65 K, where sound goes 295.07 m/s.
@@ -174,9 +183,7 @@ fn who_burns_the_guide_has_no_gap() {
         let (reports, output) = (text("reports"), text("found"));
         let words = ["diagnose", &reports, "--model", &model, "-o", &output];
         cruisefit(&[&words, more].concat()).expect(0);
-        let document = std::fs::read(at("found/diagnosis.json")).unwrap();
-        let document: serde_json::Value = serde_json::from_slice(&document).unwrap();
-        document["diagnoses"][0].clone()
+        diagnosis_document(&at("found"))["diagnoses"][0].clone()
     };
     let by_rows = diagnosed(&[]);
     let rms = |found: &serde_json::Value| found["gap"]["rms_percent"].as_f64().unwrap();

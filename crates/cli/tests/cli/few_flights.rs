@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::support::{adapt, bytes_below, cruisefit};
+use crate::support::{adapt, bytes_below, cruisefit, diagnosis_document};
 
 /// A tail on which nothing acts that the library has.
 const NOTHING: &str = r#"(
@@ -47,10 +47,7 @@ fn verdict(
     let mut words = vec!["diagnose", "--model", text(&learnt), "-o", text(&output)];
     words.extend(reports[8..].iter().map(|path| text(path)));
     cruisefit(&words).expect(0);
-    let document = std::fs::read(output.join("diagnosis.json")).unwrap();
-    let document: serde_json::Value = serde_json::from_slice(&document).unwrap();
-    crate::json_schema::assert_held("diagnosis-1.json", &document);
-    document["diagnoses"][0]["verdict"].clone()
+    diagnosis_document(&output)["diagnoses"][0]["verdict"].clone()
 }
 
 /// Seen before a table of few flights could be off: `induced_drag` −23 % with 1.00 beside `tsfc_mach_exponent`, and

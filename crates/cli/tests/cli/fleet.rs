@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::support::{adapt, bytes_below, cruisefit, csv_columns};
+use crate::support::{adapt, bytes_below, cruisefit, csv_columns, diagnosis_document};
 
 /// A tail of the type as it was when its model was learnt. Its physics is the model's, its sensors are those of a transport.
 const CLEAN: &str = r#"(
@@ -79,9 +79,7 @@ fn what_all_share_is_the_models_and_what_one_has_is_its_own() {
     // Events of a tail that was not flown are not passed over in silence.
     ran.says("F-9");
 
-    let document = std::fs::read_to_string(at("found/diagnosis.json")).unwrap();
-    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
-    crate::json_schema::assert_held("diagnosis-1.json", &document);
+    let document = diagnosis_document(&at("found"));
     let fleet = &document["fleets"][0];
     assert_eq!(fleet["model_of"], "type");
     assert_eq!(fleet["tails"].as_array().unwrap().len(), 6);

@@ -122,6 +122,14 @@ pub(crate) fn copy_of(folder: &Path, copy: &Path) {
     }
 }
 
+/// What `diagnose` wrote to a folder, held to its schema.
+pub(crate) fn diagnosis_document(folder: &Path) -> serde_json::Value {
+    let text = std::fs::read_to_string(folder.join("diagnosis.json")).unwrap();
+    let document = serde_json::from_str(&text).unwrap();
+    crate::json_schema::assert_held("diagnosis-1.json", &document);
+    document
+}
+
 /// A CSV file's columns by name.
 pub(crate) fn csv_columns(path: &Path) -> BTreeMap<String, Vec<String>> {
     let mut reader = csv::Reader::from_path(path).unwrap();

@@ -67,7 +67,8 @@ fn forms(
             let unseen = unseen(system, scorer, (&values, one), noise_scale, seed);
             // What is told is the best of a third grid: an addition that is applied is to leave nothing by its own steps.
             let told = Fits::new(system, scorer, &values, finest(&values, one), None);
-            let (best, told) = told.as_ref().map_or((kind.best, &fits), |told| (told.best(), told));
+            let told = told.as_ref().and_then(|told| Some((told.kinds().first()?.best, told)));
+            let (best, told) = told.unwrap_or((kind.best, &fits));
             let (size, deviation) = told.size(best);
             FoundForm {
                 form: told.candidates[best].form,
@@ -181,11 +182,6 @@ impl Fits {
         }
         kinds.sort_by(|a, b| b.ln.total_cmp(&a.ln));
         kinds
-    }
-
-    /// The most probable candidate.
-    fn best(&self) -> usize {
-        (0..self.ln.len()).max_by(|&a, &b| self.ln[a].total_cmp(&self.ln[b])).unwrap_or(0)
     }
 
     /// Size of a candidate in its own unit, with its standard deviation.

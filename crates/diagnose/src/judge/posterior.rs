@@ -184,11 +184,8 @@ fn flat_probabilities(analysis: &Analysis, mean_squares: &[f64]) -> Vec<f64> {
 pub(crate) fn presence(analysis: &Analysis, library: &Library) -> Vec<f64> {
     let mut present = vec![0.0; library.effects.len() + 1];
     for (scored, probability) in &analysis.models {
-        for &column in &scored.hypothesis.columns {
-            present[library.columns[column].effect] += probability;
-        }
-        if scored.hypothesis.flight_scatter_percent.is_some() {
-            present[library.effects.len()] += probability;
+        for effect in acting(scored, library) {
+            present[effect.unwrap_or(library.effects.len())] += probability;
         }
     }
     present
@@ -200,14 +197,16 @@ pub(crate) fn presence_of_any(
     library: &Library,
     effects: &[Option<usize>],
 ) -> f64 {
-    let acts = |scored: &ScoredHypothesis| {
-        let hypothesis = &scored.hypothesis;
-        let mut named =
-            hypothesis.columns.iter().map(|&column| Some(library.columns[column].effect));
-        named.any(|effect| effects.contains(&effect))
-            || (hypothesis.flight_scatter_percent.is_some() && effects.contains(&None))
-    };
+    let acts =
+        |scored: &ScoredHypothesis| acting(scored, library).any(|effect| effects.contains(&effect));
     analysis.models.iter().filter(|(scored, _)| acts(scored)).map(|(_, p)| p).sum()
+}
+
+/// Effects that act in a model, `None` being scatter between flights.
+fn acting(scored: &ScoredHypothesis, library: &Library) -> impl Iterator<Item = Option<usize>> {
+    let hypothesis = &scored.hypothesis;
+    let named = hypothesis.columns.iter().map(|&column| Some(library.columns[column].effect));
+    named.chain(hypothesis.flight_scatter_percent.map(|_| None))
 }
 
 /// What the list of causes is made from, besides the posteriors.

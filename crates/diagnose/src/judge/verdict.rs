@@ -242,9 +242,10 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
             tops.push(*top);
         }
     }
+    let acting: Vec<(EffectId, f64)> =
+        named.iter().map(|p| (id_of(library, p.effect), of(p))).collect();
     for (place, top) in tops.into_iter().enumerate() {
-        let left_open = left_open_beside(findings, top, &beside);
-        let open = left_open.into_iter().filter(|id| !held(id));
+        let open = left_open_beside(findings, (table, top), &beside, &acting);
         beside[place].class.extend(open);
     }
     let mut effects = vec![EffectId::DragTable];
@@ -270,24 +271,22 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
 }
 
 /// What the evidence leaves open of an effect beside a table, and no class has: what differs from it by less than laws may; and where
-/// it is the only one, the most probable that hold 95 % of all that acts.
-fn left_open_beside(findings: &Findings<'_>, top: &Posterior, beside: &[Beside]) -> Vec<EffectId> {
-    let &Findings { analysis, library, distances, posteriors, table, .. } = findings;
+/// it is the only one, the most probable that hold 95 % of all that acts. `acting`: what no table can hold, the most probable first.
+fn left_open_beside(
+    findings: &Findings<'_>,
+    (table, top): (&TableFinding, &Posterior),
+    beside: &[Beside],
+    acting: &[(EffectId, f64)],
+) -> Vec<EffectId> {
+    let &Findings { library, distances, .. } = findings;
     let is_new = |id: &EffectId| !beside.iter().any(|other| other.class.contains(id));
     let alike = top
         .column_and_size()
         .map_or_else(Vec::new, |(column, size)| distances.alike_in_form(library, column, size));
     let alike = alike.into_iter().map(|effect| library.effects[effect].id);
-    let mut open: Vec<EffectId> = alike.filter(is_new).collect();
+    let mut open: Vec<EffectId> =
+        alike.filter(|id| is_new(id) && !table.class.contains(id)).collect();
     let [_] = beside else { return open };
-    let present = presence(analysis, library);
-    let mut acting: Vec<(EffectId, f64)> = posteriors
-        .iter()
-        .map(|posterior| (id_of(library, posterior.effect), posterior.effect))
-        .filter(|(id, _)| !table.is_some_and(|table| table.class.contains(id)))
-        .map(|(id, effect)| (id, present[effect.unwrap_or(library.effects.len())]))
-        .collect();
-    acting.sort_by(|a, b| b.1.total_cmp(&a.1));
     // What acts in addition, and not instead, makes the sum exceed 1.
     let total = acting.iter().map(|(_, acts)| acts).sum::<f64>().min(1.0);
     let known = acting.iter().filter(|(id, _)| !is_new(id) || open.contains(id));
@@ -296,8 +295,8 @@ fn left_open_beside(findings: &Findings<'_>, top: &Posterior, beside: &[Beside])
         if sum >= CREDIBLE * total {
             break;
         }
-        if is_new(&id) && !open.contains(&id) {
-            open.push(id);
+        if is_new(id) && !open.contains(id) {
+            open.push(*id);
             sum += acts;
         }
     }

@@ -85,8 +85,7 @@ impl Run<'_> {
     /// # Errors
     /// A setting by which it would.
     pub(super) fn keeps_remainder(&self, stored: Option<&ModelFile>) -> Result<(), Failure> {
-        let learnt = stored.and_then(|model| model.learnt.as_ref());
-        let has_one = learnt.is_some_and(|learnt| learnt.baseline.is_some());
+        let has_one = stored.is_some_and(ModelFile::has_whole_model);
         if self.arguments.no_remainder && has_one {
             return Err(Failure::BegunOtherwise {
                 folder: show(&self.arguments.output),
