@@ -13,9 +13,6 @@ deciding_numbers! {
         LEAST_SPREADS: [f64; 4] = [1e-3, 30.0, 1.0, 0.1], "Mach, m, kg, K",
             "ranges of Mach number, pressure altitude, mass and SAT of which two must be exceeded",
             OurChoice "Below them a condition was not varied: rounding and turbulence move it by as much.";
-        FEWEST_FLIGHTS_OF_A_BASELINE: usize = 3, "flights",
-            "fewest flights from which a baseline learns",
-            OurChoice "Two flights know of the scatter between flights by one difference.";
         RECORDED_SHARE: f64 = 0.9, "of the segments",
             "share of the segments that must have what an effect needs",
             OurChoice "A column that is missing in every tenth segment is still a column.";

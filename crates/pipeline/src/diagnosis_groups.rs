@@ -209,8 +209,8 @@ impl Group<'_> {
         if !self.model.has_whole_model() && !asked.table_only {
             run_notes.extend(self.note_of_guide());
             run_notes.push(
-                "the model has learnt no remainder (law bayes learns one from three flights with segments inside the table): \
-                 everything that a table cannot hold counts as gap; adapt it to more flights first"
+                "the model has learnt no remainder (law bayes learns one from segments inside the table): \
+                 everything that a table cannot hold counts as gap; adapt it to flights first"
                     .to_owned(),
             );
         }

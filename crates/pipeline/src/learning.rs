@@ -186,7 +186,7 @@ pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
 pub type LnFuelFlows = Vec<Option<f64>>;
 
 /// Learns, from every segment of a tail, everything that flights show of it, the table included, in one posterior (law
-/// `bayes`). From fewer than three flights nothing is learnt. Returns what the model then predicts for each segment.
+/// `bayes`). From flights outside the table nothing is learnt. Returns what the model then predicts for each segment.
 /// `guide` says which masses and levels the initial model is of.
 pub fn remember_remainder(
     (initial, guide): (&ExtendedModel, Option<&GuideRecord>),

@@ -7,7 +7,6 @@
 use std::collections::BTreeSet;
 
 use adapt::bayes::MergeError as StateMergeError;
-use diagnose::Baseline;
 
 use crate::adaptation::{Material, RemainderChoice, materials, rebuild, settled};
 use crate::learning::{self, LearningError};
@@ -177,13 +176,15 @@ fn settle(mut merged: ModelFile) -> Result<ModelFile, MergeError> {
     Ok(merged)
 }
 
+/// Flights from which on a table alone is a table on purpose: fewer may all have flown outside it, and taught a table alone until the
+/// whole model was learnt from the first flight on.
+const ON_PURPOSE: usize = 3;
+
 /// Whether more than the table is learnt: not where a part with flights enough knows its table alone, on purpose.
 fn remainder_of(parts: &[Part]) -> RemainderChoice {
     let is_table_alone = |part: &Part| {
         let learnt = part.model.learnt.as_ref();
-        learnt.is_some_and(|learnt| {
-            learnt.baseline.is_none() && learnt.ledger.len() >= Baseline::FEWEST_FLIGHTS
-        })
+        learnt.is_some_and(|learnt| learnt.baseline.is_none() && learnt.ledger.len() >= ON_PURPOSE)
     };
     let alone = parts.iter().any(is_table_alone);
     if alone { RemainderChoice::Leave } else { RemainderChoice::Learn }

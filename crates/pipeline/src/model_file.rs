@@ -118,7 +118,7 @@ pub struct Learnt {
     /// Mean conditions.
     pub references: ConditionMeans,
     /// One posterior over everything that the flights say: drag table, smooth remainder, rotor-speed deck, noise levels
-    /// (law `bayes`, three flights or more).
+    /// (law `bayes`).
     pub baseline: Option<Baseline>,
     /// Flights, in the order in which they were learnt.
     pub ledger: Vec<LedgerEntry>,

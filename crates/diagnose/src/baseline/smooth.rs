@@ -55,9 +55,16 @@ struct SmoothText {
     /// First and last knot, in lengths from the middle.
     knots: (f64, f64),
     count: usize,
+    /// How far a guide goes on below and above the flown values, lengths; 0 in files from before it was asked.
+    #[serde(default, skip_serializing_if = "is_nowhere")]
+    guide: (f64, f64),
     /// Growth of what is not known beyond the flown values, of the process' variance per cube of lengths.
     #[serde(skip, default = "growth_beyond")]
     growth: f64,
+}
+
+const fn is_nowhere(reach: &(f64, f64)) -> bool {
+    reach.0 <= 0.0 && reach.1 <= 0.0
 }
 
 const fn growth_beyond() -> f64 {
@@ -87,10 +94,45 @@ impl SmoothText {
         (first + distance - z).max(z - last + distance).max(0.0)
     }
 
-    /// Share of the process' variance that terms which hold so much of it do not hold: more beyond what was flown.
-    fn left_of_variance(&self, z: f64, held: f64) -> f64 {
+    /// Of a place that lies so far beyond the flown values, how far of that the guide goes, and what is left.
+    fn split_by_guide(&self, z: f64, beyond: f64) -> (f64, f64) {
+        let (first, last) = self.knots;
+        let (below, above) = self.guide;
+        let known = beyond.min(if z > f64::midpoint(first, last) { above } else { below });
+        (known, beyond - known)
+    }
+
+    /// What of the process' variance terms which hold so much of it do not hold: more beyond what was flown.
+    fn left_of_variance(&self, z: f64, held: f64) -> LeftOfProcess {
         let beyond = self.beyond(z);
-        (1.0 - held).max(self.growth * beyond * beyond * beyond).max(0.0)
+        let (known, rest) = self.split_by_guide(z, beyond);
+        let grown = |distance: f64| self.growth * distance * distance * distance;
+        let beyond_guide = grown(rest);
+        let left = grown(known).max(1.0 - held - beyond_guide).max(0.0);
+        let is_beyond = beyond > BEYOND_BY_ROUNDING;
+        LeftOfProcess {
+            between_knots: if is_beyond { 0.0 } else { left },
+            within_guide: if is_beyond { left } else { 0.0 },
+            beyond_guide,
+        }
+    }
+}
+
+/// Shares of a process' variance that its terms do not hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LeftOfProcess {
+    /// Within what was flown.
+    pub(crate) between_knots: f64,
+    /// Beyond it, as far as the guide goes.
+    pub(crate) within_guide: f64,
+    /// Beyond the guide, in addition.
+    pub(crate) beyond_guide: f64,
+}
+
+impl LeftOfProcess {
+    /// All of them.
+    pub(crate) const fn total(self) -> f64 {
+        self.between_knots + self.within_guide + self.beyond_guide
     }
 }
 
@@ -133,6 +175,7 @@ impl Smooth {
             length: length * stretch,
             knots: (center - half, center + half),
             count: intervals as usize + 3,
+            guide: (0.0, 0.0),
             growth: GROWTH_BEYOND,
         };
         Self::try_from(text).ok()
@@ -186,18 +229,30 @@ impl Smooth {
         self.text.growth
     }
 
+    /// Tells it how far the guide goes on below and above the flown values, lengths.
+    pub(crate) const fn set_reach_of_guide(&mut self, reach: (f64, f64)) {
+        self.text.guide = reach;
+    }
+
+    /// Of a signed distance beyond the flown values, how far the guide goes, and what is left; lengths.
+    pub(crate) fn split_by_guide(&self, distance: f64) -> (f64, f64) {
+        let (below, above) = self.text.guide;
+        let known = distance.abs().min(if distance > 0.0 { above } else { below });
+        (known, distance.abs() - known)
+    }
+
     /// Whether a value lies beyond those that were flown.
     pub(crate) fn is_beyond(&self, value: f64) -> bool {
         self.beyond(value) != 0.0
     }
 
-    /// Writes the terms at a value; returns the share of the process' variance that they do not hold.
-    pub(crate) fn write(&self, value: f64, into: &mut [f64]) -> f64 {
+    /// Writes the terms at a value; returns the shares of the process' variance that they do not hold.
+    pub(crate) fn write(&self, value: f64, into: &mut [f64]) -> LeftOfProcess {
         self.write_at(self.at(value), into)
     }
 
     /// The same at a place in lengths.
-    fn write_at(&self, z: f64, into: &mut [f64]) -> f64 {
+    fn write_at(&self, z: f64, into: &mut [f64]) -> LeftOfProcess {
         into[0] = z;
         let terms = &mut into[1..=self.text.count];
         self.write_kernels(z, terms);
@@ -331,11 +386,33 @@ impl Prepared {
         self.text.knots
     }
 
-    /// Share of the process' variance that is left where its terms leave so much.
+    /// Adds what is left of a process of this variance where its terms leave such shares of it: what is not beyond the guide, and what
+    /// is, as [`Smooth::write`] has them.
     #[expect(clippy::inline_always, reason = "as the others")]
     #[inline(always)]
-    pub(crate) fn left(&self, z: f64, left: f64) -> f64 {
-        self.text.left_of_variance(z, 1.0 - left)
+    pub(crate) fn add_left(
+        &self,
+        (z, left): (&Lanes, &Lanes),
+        variance: f64,
+        [known, beyond_guide]: &mut [Lanes; 2],
+    ) {
+        let ((first, last), (below, above)) = (self.text.knots, self.text.guide);
+        let (middle, half) = (f64::midpoint(first, last), 0.5 * (last - first) - self.distance);
+        let growth = variance * self.text.growth;
+        for lane in 0..LANES {
+            let from_middle = z[lane] - middle;
+            let beyond = from_middle.abs() - half;
+            let beyond = if beyond > 0.0 { beyond } else { 0.0 };
+            let reach = if from_middle > 0.0 { above } else { below };
+            let within = if beyond < reach { beyond } else { reach };
+            let rest = beyond - within;
+            let outside = growth * rest * rest * rest;
+            let grown = growth * within * within * within;
+            let of_terms = variance * left[lane] - outside;
+            let inside = if of_terms > grown { of_terms } else { grown };
+            known[lane] += if inside > 0.0 { inside } else { 0.0 };
+            beyond_guide[lane] += outside;
+        }
     }
 
     /// The function's mean as a curve, within [`CURVE_ERROR`]; `None` where that would be very many pieces.
@@ -392,7 +469,7 @@ impl Prepared {
     #[inline(always)]
     pub(crate) fn write<const N: usize>(&self, z: &[f64; N], into: &mut [[f64; N]]) -> [f64; N] {
         let held = self.held(z, into);
-        each(z, &held, |z, held| self.text.left_of_variance(z, held))
+        each(z, &held, |z, held| self.text.left_of_variance(z, held).total())
     }
 
     /// Writes the terms; returns the share of the process' variance that they hold.

@@ -37,6 +37,8 @@ const JITTER: f64 = 1e-3;
 /// coefficients do not hold of f, where nothing was flown, is added to C: the smooth functions' processes, and the nodes' own.
 pub(super) struct Guide {
     departures: Vec<Departure>,
+    /// How far the guide goes on below and above what was flown, for each smooth function; lengths.
+    reaches: Vec<(f64, f64)>,
     width: usize,
 }
 
@@ -48,10 +50,19 @@ impl Guide {
         data: &PreparedFlights<'_>,
         extrapolated: &[bool],
     ) -> Self {
-        let departures = baseline.table.as_ref().map_or_else(Vec::new, |table| {
-            Departures::new(model, baseline, data, table).over_range(extrapolated)
-        });
-        Self { departures, width: baseline.layout().len() }
+        let (departures, reaches) =
+            baseline.table.as_ref().map_or_else(Default::default, |table| {
+                let of_states = Departures::new(model, baseline, data, table);
+                let all = of_states.over_range(extrapolated);
+                let reaches = reaches(&all, baseline.smooth_functions());
+                (all.into_iter().filter(|one| of_states.is_unflown(one)).collect(), reaches)
+            });
+        Self { departures, reaches, width: baseline.layout().len() }
+    }
+
+    /// How far the guide goes on below and above what was flown, for each smooth function; lengths.
+    pub(super) fn reaches(&self) -> &[(f64, f64)] {
+        &self.reaches
     }
 
     /// Holds coefficients, in units of these deviations, to it.
@@ -89,30 +100,53 @@ impl Guide {
     fn covariance(&self, baseline: &Baseline) -> Mat<f64> {
         let growths: Vec<f64> =
             (0..baseline.smooth_functions()).map(|k| baseline.growth_beyond(k)).collect();
+        let left_by_guide = |one: &Departure| {
+            one.beyond.iter().map(|at| baseline.left_by_guide(at).sqrt()).collect()
+        };
+        let left: Vec<Vec<f64>> = self.departures.iter().map(left_by_guide).collect();
         Mat::from_fn(self.departures.len(), self.departures.len(), |a, b| {
             let (one, other) = (&self.departures[a], &self.departures[b]);
             let lengths = (one.place.0 - other.place.0) / GUIDE_SHAPE_LIFT;
             let machs = (one.place.1 - other.place.1) / GUIDE_SHAPE_MACH;
             let shape = (-0.5 * (lengths * lengths + machs * machs)).exp();
             let own = if a == b { JITTER } else { 0.0 };
-            let unflown = unflown(&one.beyond, &other.beyond, &growths);
+            let unflown = unflown((one, &left[a]), (other, &left[b]), &growths);
             let of_node = if a == b { one.left } else { 0.0 };
             GUIDE_SHAPE_DEVIATION.powi(2) * (shape + own) + unflown + of_node
         })
     }
 }
 
-/// Covariance of what no coefficient holds of the means of two states, each over its levels.
-fn unflown(some: &[Vec<f64>], others: &[Vec<f64>], growths: &[f64]) -> f64 {
+/// Covariance of what no coefficient holds of the means of two states, each over its levels; with each the roots of what the guide
+/// leaves of it.
+fn unflown(
+    (one, of_one): (&Departure, &[f64]),
+    (other, of_other): (&Departure, &[f64]),
+    growths: &[f64],
+) -> f64 {
     let mut sum = 0.0;
-    for one in some {
-        for other in others {
-            for ((near, far), growth) in one.iter().zip(other).zip(growths) {
-                sum += growth * integrated_wiener::covariance(*near, *far);
-            }
+    for (near, left_near) in one.beyond.iter().zip(of_one) {
+        for (far, left_far) in other.beyond.iter().zip(of_other) {
+            let functions = near.iter().zip(far).zip(growths);
+            let of = |((near, far), growth): ((&f64, &f64), &f64)| {
+                growth * integrated_wiener::covariance(*near, *far)
+            };
+            sum += left_near * left_far * functions.map(of).sum::<f64>();
         }
     }
-    sum / (some.len() * others.len()) as f64
+    sum / (one.beyond.len() * other.beyond.len()) as f64
+}
+
+/// How far states go on below and above what was flown, for each smooth function; lengths.
+fn reaches(states: &[Departure], functions: usize) -> Vec<(f64, f64)> {
+    let mut found = vec![(0.0_f64, 0.0_f64); functions];
+    for distances in states.iter().flat_map(|state| &state.beyond) {
+        for ((below, above), distance) in found.iter_mut().zip(distances) {
+            *below = below.max(-distance);
+            *above = above.max(*distance);
+        }
+    }
+    found
 }
 
 /// A departure from the guide.
@@ -200,8 +234,7 @@ impl<'a, 'm> Departures<'a, 'm> {
             }
             Some(found)
         };
-        let departures = places.filter(informs).filter_map(of_place);
-        departures.filter(|departure| self.is_unflown(departure)).collect()
+        places.filter(informs).filter_map(of_place).collect()
     }
 
     /// Whether Mach number, lift coefficient or thrust lies beyond what was flown: elsewhere flights say what the aircraft does.
@@ -249,6 +282,7 @@ mod tests {
     use test_support::fleet::{Background, Setup, exact_model, fly};
 
     use super::*;
+    use crate::baseline::within_guide;
     use crate::learning::tests::with_taught;
 
     /// What six flights leave to a guide that may be off by 3 % alike everywhere.
@@ -266,6 +300,18 @@ mod tests {
         let mut found = Mat::identity(of.nrows(), of.nrows());
         Cholesky::new(of).unwrap().solve(&mut found);
         found
+    }
+
+    /// The oracle is dense algebra: the covariance of (δ, δ + e) given the second, by the inverse of the precision.
+    #[test]
+    fn what_nobody_flew_given_the_guide() {
+        let of_guide = GUIDE_SHAPE_DEVIATION.powi(2);
+        for variance in [1e-6, 1e-3, 0.2] {
+            let joint =
+                Mat::from_fn(2, 2, |i, j| variance + if i == 1 && j == 1 { of_guide } else { 0.0 });
+            let expected = 1.0 / inverse(&joint)[(0, 0)];
+            assert!((within_guide(variance) / expected - 1.0).abs() < 1e-9, "{variance}");
+        }
     }
 
     /// The oracle is dense algebra in the other form: precisions add, V' = (V⁻¹ + AᵀC⁻¹A)⁻¹, m' = V'V⁻¹m.
@@ -319,6 +365,14 @@ mod tests {
             let after = spread(&covariance);
             assert!(before > 0.2 && after < 0.5 * before, "{before} {after}");
             assert!(mean.iter().all(|value| value.abs() < 1e-15));
+            // What no coefficient holds is as far from the guide as guides are off at most, and never farther than before.
+            for distances in guide.departures.iter().flat_map(|one| &one.beyond) {
+                let growth = |k: usize| taught.growth_beyond(k) / taught.interval_factor().powi(2);
+                let grown: f64 =
+                    distances.iter().enumerate().map(|(k, d)| growth(k) * d.abs().powi(3)).sum();
+                let left = taught.left_by_guide(distances);
+                assert!(left <= 1.0 && left * grown <= GUIDE_SHAPE_DEVIATION.powi(2), "{left}");
+            }
             let is_flown = |one: &Departure| one.beyond.iter().flatten().all(|d| *d == 0.0);
             assert!(!guide.departures.iter().any(is_flown));
         });

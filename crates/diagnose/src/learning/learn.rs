@@ -21,7 +21,6 @@ use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::flown;
-use crate::thresholds::FEWEST_FLIGHTS_OF_A_BASELINE;
 
 /// Least share of a flight that counts. Our choice: nothing, and no division by zero.
 const LEAST_SHARE: f64 = 1e-9;
@@ -37,15 +36,12 @@ const VARIABLES: [Variable; 6] = [
 ];
 
 impl Baseline {
-    /// Fewest flights from which anything is learnt.
-    pub const FEWEST_FLIGHTS: usize = FEWEST_FLIGHTS_OF_A_BASELINE;
-
     /// Learns from clean flights against a model and a drag table. `table` is what is believed of that table before the
     /// flights; without it the table is taken as exact. With a half-life a flight counts by its age at the newest one,
     /// 2^(−age/half-life).
     ///
     /// # Errors
-    /// [`DiagnoseError`] where the model takes no effects, or fewer than three flights are inside the table.
+    /// [`DiagnoseError`] where the model takes no effects, or no flight is inside the table.
     pub fn learn(
         model: &ExtendedModel,
         drag_table: &lut::Table,
@@ -117,17 +113,14 @@ impl Baseline {
                 )
             },
         );
-        if data.flights.len() < FEWEST_FLIGHTS_OF_A_BASELINE {
-            let found = data.flights.len();
-            return Err(DiagnoseError::TooFewFlights {
-                found,
-                needed: FEWEST_FLIGHTS_OF_A_BASELINE,
-            });
+        if data.flights.is_empty() {
+            return Err(DiagnoseError::NoFlights);
         }
         count_by_age(&mut data.flights, half_life_days);
         let mut baseline = Self::prior(&data, &references, table);
         let physics = Physics::of(&effect_model, &baseline, &data);
         let guide = Guide::of(&effect_model, &baseline, &data, model.extrapolated());
+        baseline.set_reach_of_guide(guide.reaches());
         baseline.fit(&data, (&physics, &guide))?;
         Ok((baseline, data.segments))
     }

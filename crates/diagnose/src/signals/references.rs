@@ -12,14 +12,9 @@ pub enum DiagnoseError {
     /// The model takes no effects.
     #[error(transparent)]
     Model(#[from] EffectModelError),
-    /// Too few flights to learn a baseline from.
-    #[error("{found} flights inside the drag table, at least {needed} are needed")]
-    TooFewFlights {
-        /// Flights found.
-        found: usize,
-        /// Flights needed.
-        needed: usize,
-    },
+    /// Nothing to learn a baseline from.
+    #[error("no flight has a segment inside the drag table whose fuel flow can be used")]
+    NoFlights,
     /// Too few tails to tell a type from its tails.
     #[error(
         "{found} tails with flights inside the drag table, at least {needed} are needed for a fleet"

@@ -309,7 +309,7 @@ def adapt(
             is refused.
         law: ``bayes`` or ``paper``.
         threshold_percent: Law ``paper``: adapt where the error exceeds this, in per cent; the model's without it.
-        remainder: Law ``bayes``: also learn what no table can hold (smooth remainder, N2 deck, noise), from three flights on.
+        remainder: Law ``bayes``: also learn what no table can hold (smooth remainder, N2 deck, noise).
         older_flights: Learn flights older than the newest known one, with a note; otherwise they are refused.
         relearn: Learn a flight that contradicts a known one in its place: its tail is learnt anew from its segments.
         accept: Also learn tails that are more than 15 % off the book, which are refused otherwise.

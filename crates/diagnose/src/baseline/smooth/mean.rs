@@ -144,7 +144,7 @@ mod tests {
         let mut terms = vec![0.0; smooth.len()];
         let (mut most, all) = (0.0_f64, places(200));
         for z in &all {
-            let left = smooth.write_at(*z, &mut terms);
+            let left = smooth.write_at(*z, &mut terms).total();
             assert!((smooth.left_of_mean(&[*z]) - left).abs() < 1e-12);
             most = most.max(left);
         }

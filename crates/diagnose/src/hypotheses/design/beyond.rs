@@ -14,6 +14,8 @@ const COLUMNS: usize = 3;
 /// cov(a, b) = σ²·g·a²·(3b − a)/2,  a ≤ b lengths beyond,  g the growth of [baseline.1];  φ(b) = L⁻¹·cov(Z, b),  LLᵀ = cov(Z, Z)  [diagnosis.63]
 /// ```
 ///
+/// Of a segment's columns the root of the share counts that the guide leaves of the variance there `[baseline.12]`.
+///
 /// Without them a healthy aircraft that flies faster than it was taught is told by whatever effect bends most there.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Beyond {
@@ -64,12 +66,13 @@ impl Beyond {
     /// Writes the columns of a segment, on fuel flow, each of unit prior variance.
     pub(crate) fn write(&self, baseline: &Baseline, row: &SegmentRow, into: &mut [f64]) {
         let distances: Vec<f64> = baseline.beyond(&row.response).collect();
+        let left = baseline.left_by_guide(&distances).sqrt();
         for (side, terms) in self.sides.iter().zip(into.chunks_exact_mut(COLUMNS)) {
             let distance = distances[side.smooth];
             let is_there = distance != 0.0 && (distance > 0.0) == side.is_above;
             let share = if is_there { distance.abs() / side.farthest } else { 0.0 };
             for (term, value) in terms.iter_mut().zip(self.root.terms_at(share)) {
-                *term = side.deviation * value;
+                *term = left * side.deviation * value;
             }
         }
     }

@@ -6,8 +6,8 @@ use core::ops::Range;
 
 use effects::Variable;
 
-use crate::baseline::Baseline;
 use crate::baseline::smooth::Prepared;
+use crate::baseline::{Baseline, within_guide};
 use crate::math::curve::{Curve, Fetched};
 use crate::math::lanes::{LANES, Lanes, add, add_product, each, map};
 use crate::residuals::level::states::{MachSide, States};
@@ -277,13 +277,13 @@ impl Functions {
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
     pub(super) fn left(&self, at: &Values) -> Lanes {
-        let mut left = [0.0; LANES];
+        let mut left = [[0.0; LANES]; 2];
         for place in 0..self.smooth.len().min(MOST) {
             let (one, z) = (&self.smooth[place], &at.lengths[place]);
-            let of_one = each(z, &one.left.at(z), |z, left| one.prepared.left(z, left));
-            add(&mut left, self.smooth_variance, &of_one);
+            one.prepared.add_left((z, &one.left.at(z)), self.smooth_variance, &mut left);
         }
-        left
+        let [known, beyond_guide] = &left;
+        each(known, beyond_guide, |known, rest| within_guide(known) + rest)
     }
 }
 

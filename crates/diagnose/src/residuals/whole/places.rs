@@ -24,7 +24,7 @@ impl Places {
         let nodes: Vec<Weighted> = corners.into_iter().flatten().map(of_thrust).collect();
         let unvisited =
             baseline.table.as_ref().map_or(0.0, |table| table.left_out_unvisited(&nodes));
-        let unflown = left.beyond + unvisited * unvisited;
+        let unflown = left.beyond() + unvisited * unvisited;
         Self { smooth: baseline.places(response).collect(), nodes, unflown }
     }
 }
