@@ -13,6 +13,9 @@ deciding_numbers! {
         LEAST_SPREADS: [f64; 4] = [1e-3, 30.0, 1.0, 0.1], "Mach, m, kg, K",
             "ranges of Mach number, pressure altitude, mass and SAT of which two must be exceeded",
             OurChoice "Below them a condition was not varied: rounding and turbulence move it by as much.";
+        FEWEST_FLIGHTS_OF_SCATTER: usize = 3, "flights",
+            "fewest flights that raise the scatter between flights to what each shows against the others",
+            OurChoice "Two know of it by one difference, one by none: what it shows is how far the guide is off.";
         RECORDED_SHARE: f64 = 0.9, "of the segments",
             "share of the segments that must have what an effect needs",
             OurChoice "A column that is missing in every tenth segment is still a column.";

@@ -79,6 +79,9 @@ pub(crate) fn headline(result: &TailResult) -> String {
     }
 }
 
+/// Flights from which on a page states an interval of their mean: that of two is thirteen of its standard deviations wide. Our choice.
+const FEWEST_OF_AN_INTERVAL: usize = 3;
+
 /// What was found, in plain words.
 fn verdict(result: &TailResult, view: &TailView) -> Markup {
     let errors = &result.summary.fuel_flow_error_percent;
@@ -91,7 +94,10 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
         Some(_) => summary.book_half_width95_percent,
         None => summary.mean_error_half_width95_percent,
     };
+    let few = summary.flights < FEWEST_OF_AN_INTERVAL;
+    let half = half.filter(|_| !few);
     let within = half.is_some_and(|half| mean.abs() <= half);
+    let flights = counted(summary.flights, "flight");
     let says = match book {
         Some(_) => "its guide says",
         None if view.adapted => "the model that it began with predicts",
@@ -107,7 +113,8 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
                 b {
                     @if within { "It burns what " (says) ", as far as these flights tell" }
                     @else {
-                        "It burns " (format!("{:.2}", fuel_factor_percent(mean).abs())) " % "
+                        @if few { "On " (flights) " it burned " } @else { "It burns " }
+                        (format!("{:.2}", fuel_factor_percent(mean).abs())) " % "
                         @if mean > 0.0 { "more" } @else { "less" } " than " (says)
                     }
                 }
@@ -116,7 +123,8 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
                     " (" (signed(Some(fuel_factor_percent(mean - half)))) " to "
                     (signed(Some(fuel_factor_percent(mean + half)))) " %, 95 %)"
                 }
-                ", mean of all flights. As an error, in % of recorded fuel flow: " (signed(Some(mean)))
+                @if few { ", too few flights for an interval: others may show another" } @else { ", mean of all flights" }
+                ". As an error, in % of recorded fuel flow: " (signed(Some(mean)))
                 @if let Some(half) = half { " ± " (plain(Some(half))) }
                 "."
                 @if let Some(period) = view.period() { " Flown " (period) "." }

@@ -208,11 +208,13 @@ impl Group<'_> {
         let mut run_notes = asked.restrictions();
         if !self.model.has_whole_model() && !asked.table_only {
             run_notes.extend(self.note_of_guide());
-            run_notes.push(
-                "the model has learnt no remainder (law bayes learns one from segments inside the table): \
-                 everything that a table cannot hold counts as gap; adapt it to flights first"
-                    .to_owned(),
-            );
+            let advice = if self.model.has_learnt_segments() {
+                "the model has learnt a table alone: everything that a table cannot hold counts as gap; \
+                 law bayes learns it too, without --no-remainder"
+            } else {
+                "the model has learnt nothing: everything that a table cannot hold counts as gap; adapt it to flights first"
+            };
+            run_notes.push(advice.to_owned());
         }
         let mut seen = BTreeSet::new();
         for note in self.flights.iter().flat_map(|flight| &flight.reduced.notes) {

@@ -146,7 +146,8 @@ pub(crate) struct SmoothError {
 }
 
 impl Smooth {
-    /// Over the values that were flown; `None` where they do not differ.
+    /// Over the values that were flown; `None` without any. One value alone is the middle of a short range: what lies beyond it is not
+    /// known for that.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -155,7 +156,7 @@ impl Smooth {
     pub(crate) fn over(variable: Variable, length: f64, values: &[f64]) -> Option<Self> {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if (high - low).is_nan() || high - low <= 1e-3 * length {
+        if !(low.is_finite() && high.is_finite()) {
             return None;
         }
         let middle = values.iter().sum::<f64>() / values.len() as f64;

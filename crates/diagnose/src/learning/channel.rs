@@ -13,6 +13,7 @@ use crate::learning::turned::TurnedFlights;
 use crate::learning::unseen::{Unseen, scatter_by_unseen, unseen};
 use crate::math::lower::dot;
 use crate::math::pivoted::{Pivoted, pivoted};
+use crate::thresholds::FEWEST_FLIGHTS_OF_SCATTER;
 
 /// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
 /// not enough.
@@ -170,7 +171,7 @@ fn points_raised(evidence: &mut Evidence<'_>, likeliest: &Dials, raised: &Dials)
     points
 }
 
-/// Raises the scatter between flights to what unseen flights show, and returns those.
+/// Raises the scatter between flights to what unseen flights show, where there are enough to know, and returns those.
 fn raise_scatter(
     rows: &ChannelRows,
     weights: &Weights,
@@ -180,6 +181,9 @@ fn raise_scatter(
     let mut others = Vec::new();
     for _ in 0..INFLATIONS {
         others = unseen(rows, weights, &evidence.solved(dials)?, dials);
+        if others.len() < FEWEST_FLIGHTS_OF_SCATTER {
+            break;
+        }
         let between = scatter_by_unseen(&others, dials.between);
         let settled = between < SETTLED_SCATTER * dials.between;
         dials.between = between;

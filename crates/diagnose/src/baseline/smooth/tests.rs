@@ -78,10 +78,20 @@ fn prepared_it_is_the_same_function() {
     }
 }
 
+/// Without a function of what did not vary, one flight at Mach 0.87 said as much of Mach 0.6 as of its own.
 #[test]
-fn what_does_not_vary_has_no_function_and_a_wide_range_few_knots() {
-    assert!(Smooth::over(Variable::Mach, 0.02, &[0.8; 30]).is_none());
+fn what_does_not_vary_is_unknown_beyond_its_value() {
     assert!(Smooth::over(Variable::Mach, 0.02, &[]).is_none());
+    let constant = Smooth::over(Variable::Mach, 0.02, &[0.8; 30]).unwrap();
+    let mut terms = vec![0.0; constant.len()];
+    assert!(!constant.is_beyond(0.8) && constant.is_beyond(0.81) && constant.is_beyond(0.79));
+    let grown = |value: f64, terms: &mut [f64]| constant.write(value, terms).total();
+    assert!(grown(0.8, &mut terms) < 0.01);
+    assert!(grown(0.9, &mut terms) > 50.0 && grown(0.7, &mut terms) > 50.0);
+}
+
+#[test]
+fn a_wide_range_has_few_knots() {
     let wide = Smooth::over(Variable::PressureAltitude, 600.0, &[0.0, 60_000.0]).unwrap();
     assert!(wide.len() <= 1 + SMOOTH_MOST_KNOTS);
     let mut terms = vec![0.0; wide.len()];
