@@ -14,7 +14,7 @@ const NODES_WITH_COVARIANCE: usize = 700;
 
 /// What a model's table does not know where these flights are. Of a model that no flight has taught, or that was taught by a
 /// law that does not say, it is what is believed of a guide: the prior of law `bayes`; and so it is of what the flights have
-/// left open of it until they have taught the whole model: a table of few flights may still be off as a guide's is. `None`
+/// left open of a table alone: it may still be off as a guide's is. `None`
 /// where the aircraft file states that the table is exact (`table_uncertainty_percent: 0`) and nothing was learnt.
 /// `None` too where the whole model is asked for, whose baseline has it.
 ///

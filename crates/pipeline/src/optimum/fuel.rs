@@ -97,7 +97,7 @@ impl<'a> OptimumModel<'a> {
                 (0..draws).map(|_| posterior.drawn(&numbers(nodes))).collect()
             }))
         };
-        // A table of few flights goes on from the polynomial: against the guide's rows what that loses of them would be a saving.
+        // A table alone goes on from the polynomial: against the guide's rows what that loses of them would be a saving.
         let book = if model.has_whole_model() { model.reference() } else { &model.initial };
         Ok(Self {
             own: model.current()?,
