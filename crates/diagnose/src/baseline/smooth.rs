@@ -94,18 +94,23 @@ impl SmoothText {
         (first + distance - z).max(z - last + distance).max(0.0)
     }
 
-    /// Of a place that lies so far beyond the flown values, how far of that the guide goes, and what is left.
-    fn split_by_guide(&self, z: f64, beyond: f64) -> (f64, f64) {
+    /// Whether a place lies nearer to the last knot than to the first.
+    fn is_above(&self, z: f64) -> bool {
         let (first, last) = self.knots;
+        z > f64::midpoint(first, last)
+    }
+
+    /// Of a distance beyond the flown values, above or below them, how far the guide goes, and what is left.
+    fn split_by_guide(&self, is_above: bool, beyond: f64) -> (f64, f64) {
         let (below, above) = self.guide;
-        let known = beyond.min(if z > f64::midpoint(first, last) { above } else { below });
+        let known = beyond.min(if is_above { above } else { below });
         (known, beyond - known)
     }
 
     /// What of the process' variance terms which hold so much of it do not hold: more beyond what was flown.
     fn left_of_variance(&self, z: f64, held: f64) -> LeftOfProcess {
         let beyond = self.beyond(z);
-        let (known, rest) = self.split_by_guide(z, beyond);
+        let (known, rest) = self.split_by_guide(self.is_above(z), beyond);
         let grown = |distance: f64| self.growth * distance * distance * distance;
         let beyond_guide = grown(rest);
         let left = grown(known).max(1.0 - held - beyond_guide).max(0.0);
@@ -215,10 +220,9 @@ impl Smooth {
     pub(crate) fn beyond(&self, value: f64) -> f64 {
         let z = self.at(value);
         let beyond = self.text.beyond(z);
-        let (first, last) = self.text.knots;
         if beyond <= BEYOND_BY_ROUNDING {
             0.0
-        } else if z > f64::midpoint(first, last) {
+        } else if self.text.is_above(z) {
             beyond
         } else {
             -beyond
@@ -237,9 +241,7 @@ impl Smooth {
 
     /// Of a signed distance beyond the flown values, how far the guide goes, and what is left; lengths.
     pub(crate) fn split_by_guide(&self, distance: f64) -> (f64, f64) {
-        let (below, above) = self.text.guide;
-        let known = distance.abs().min(if distance > 0.0 { above } else { below });
-        (known, distance.abs() - known)
+        self.text.split_by_guide(distance > 0.0, distance.abs())
     }
 
     /// Whether a value lies beyond those that were flown.
