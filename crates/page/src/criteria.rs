@@ -3,7 +3,8 @@
 use maud::{Markup, html};
 use pipeline::criteria_costs::CriteriaCosts;
 
-use crate::text::{counted, percent};
+use crate::text::percent;
+use pipeline::summary::counted;
 
 /// What became of the samples, in a sentence, and criterion by criterion in a folded table.
 pub(crate) fn costs(costs: &CriteriaCosts) -> Markup {

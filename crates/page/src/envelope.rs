@@ -3,8 +3,9 @@
 use maud::{Markup, html};
 
 use crate::shade;
-use crate::text::{breakpoint, counted, signed_tenths};
+use crate::text::{breakpoint, signed_tenths};
 use crate::view::{Point, TailView};
+use pipeline::summary::counted;
 
 /// Columns and rows that fit on a page; cells of a finer grid are merged.
 const MOST_COLUMNS: usize = 12;

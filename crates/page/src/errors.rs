@@ -6,9 +6,10 @@ use maud::{Markup, html};
 
 use crate::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
 use crate::place::{BEFORE, Place};
-use crate::text::{counted, plain, signed};
+use crate::text::{plain, signed};
 use crate::view::{Flight, TailView};
 use pipeline::statistics::ErrorStatistics;
+use pipeline::summary::counted;
 
 /// Width of a bin where 60 of them suffice, %.
 const BIN_PERCENT: f64 = 0.5;

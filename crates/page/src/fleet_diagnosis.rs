@@ -79,8 +79,8 @@ fn section(run: &FleetRun<'_>, fleet: &Fleet<'_>) -> Markup {
             h2 { (record.aircraft_type) }
             p.run {
                 (counted(record.tails.len(), "tail")) ", "
-                (counted(record.tails.iter().map(|tail| tail.flights).sum(), "flight")) ", "
-                (counted(record.tails.iter().map(|tail| tail.segments).sum(), "segment")) "; "
+                (counted(record.tails.iter().map(|tail| tail.flights).sum::<usize>(), "flight")) ", "
+                (counted(record.tails.iter().map(|tail| tail.segments).sum::<usize>(), "segment")) "; "
                 @if record.model_of == "type" { "one model for all" } @else { "each tail against its own model" }
                 @if let Some(model) = model(run, fleet) { ": " (model) }
                 "."

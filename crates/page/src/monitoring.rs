@@ -12,7 +12,8 @@ use pipeline::monitoring::{
 
 use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
 use crate::frame::framed;
-use crate::text::{counted, signed, signed_tenths};
+use crate::text::{signed, signed_tenths};
+use pipeline::summary::counted;
 
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 320.0;
@@ -75,7 +76,7 @@ fn head(document: &MonitorDocument, options: &[String]) -> String {
     }
     let types: BTreeSet<&str> = tails.iter().map(|tail| tail.aircraft_type.as_str()).collect();
     let types: Vec<&str> = types.into_iter().filter(|code| !code.is_empty()).collect();
-    let flights = tails.iter().map(|tail| tail.flights.len()).sum();
+    let flights: usize = tails.iter().map(|tail| tail.flights.len()).sum();
     let types = if types.is_empty() { String::new() } else { format!(" ({})", types.join(", ")) };
     told.push(format!("{}{types}", counted(tails.len(), "tail")));
     told.push(counted(flights, "flight"));

@@ -4,8 +4,9 @@ use maud::{Markup, html};
 
 use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
 use crate::place::Place;
-use crate::text::{counted, signed};
+use crate::text::signed;
 use crate::view::{Cruise, TailView};
+use pipeline::summary::counted;
 
 const WIDTH: f64 = 500.0;
 const HEIGHT: f64 = 290.0;

@@ -5,8 +5,9 @@ use maud::{Markup, html};
 
 use crate::chart::{Axis, Chart, Key, Mark, legend, thinned};
 use crate::place::Place;
-use crate::text::{breakpoint, counted};
+use crate::text::breakpoint;
 use crate::view::{Point, TailView};
+use pipeline::summary::counted;
 
 /// Panels at most.
 const PANELS: usize = 4;

@@ -6,13 +6,13 @@ use maud::{Markup, PreEscaped, html};
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::Learnt;
-use pipeline::summary::{Summary, TailSummary};
+use pipeline::summary::{Summary, TailSummary, counted};
 
 use crate::chart::dates;
 use crate::fleet::FleetRow;
 use crate::frame::framed;
 use crate::place::{Detail, Place};
-use crate::text::{counted, signed};
+use crate::text::signed;
 use crate::view::TailView;
 use crate::{fleet, tail};
 
@@ -248,8 +248,8 @@ fn what_was_run(summary: &Summary, sections: &[&Section]) -> String {
     words.push(format!(
         "{}, {}, {}.",
         counted(summary.tails.len(), "tail"),
-        counted(summary.tails.iter().map(|tail| tail.flights).sum(), "flight"),
-        counted(summary.tails.iter().map(|tail| tail.segments).sum(), "segment"),
+        counted(summary.tails.iter().map(|tail| tail.flights).sum::<usize>(), "flight"),
+        counted(summary.tails.iter().map(|tail| tail.segments).sum::<usize>(), "segment"),
     ));
     words.join("; ")
 }

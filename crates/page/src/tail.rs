@@ -3,12 +3,13 @@
 use maud::{Markup, html};
 
 use crate::place::{Detail, Place};
-use crate::text::{counted, plain, signed};
+use crate::text::{plain, signed};
 use crate::view::TailView;
 use crate::{criteria, envelope, errors, performance, polars, relief, surface};
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
+use pipeline::summary::counted;
 
 /// Deviation beyond which units or the guide are more probable causes than the aircraft, %: `add_an_aircraft` in the book.
 const RARELY_THE_AIRCRAFT_PERCENT: f64 = 15.0;

@@ -27,11 +27,6 @@ pub(crate) fn count(count: Option<u32>) -> String {
     count.map_or_else(|| "–".to_owned(), |count| count.to_string())
 }
 
-/// Number and noun, in the plural where it belongs.
-pub(crate) fn counted(count: usize, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
-}
-
 /// A breakpoint or coefficient: two decimals, more where it has more, four at most.
 pub(crate) fn breakpoint(value: f64) -> String {
     let text = format!("{value:.4}");
@@ -78,8 +73,6 @@ mod tests {
         assert_eq!(signed_tenths(-0.04), "+0.0");
         assert_eq!(plain(Some(1.0675)), "1.07");
         assert_eq!(percent(Some(0.41)), "41 %");
-        assert_eq!(counted(1, "segment"), "1 segment");
-        assert_eq!(counted(0, "flight"), "0 flights");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::chart::{Axis, Chart, Key, Mark, legend};
 use crate::frame::framed;
 use crate::matrix::{self, Confusion};
-use crate::text::counted;
+use pipeline::summary::counted;
 
 /// Results of blind trials, as the page needs them. Every number is one of `trials.json`.
 #[derive(Clone, Debug, Default)]

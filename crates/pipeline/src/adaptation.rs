@@ -19,7 +19,7 @@ use crate::learnt_flights::KnownFlight;
 use crate::model_file::{Learnt, LedgerEntry, ModelFile};
 use crate::reading::{FlightRead, RefusedReport};
 
-pub use begun::{LawAsked, Start, Starts};
+pub use begun::{LawAsked, Start, Starts, choice_of};
 pub use dates::{Dates, refuse_impossible};
 use new_flights::NewFlights;
 pub use sorting::{Contradictions, OlderFlights, Sorting};

@@ -14,6 +14,7 @@ pub use openap::{OpenapError, OpenapPolar, openap};
 pub use remainder::{LeftOut, remainder_left_out};
 
 use crate::model_file::ModelFile;
+use crate::summary::counted;
 
 /// Which nodes guide or learnt flights inform.
 pub(crate) fn informed(model: &ModelFile) -> Vec<bool> {
@@ -39,7 +40,7 @@ fn origin(model: &ModelFile) -> String {
     let aircraft = model.initial.aircraft();
     let learnt = model.learnt.as_ref().map_or_else(
         || "initial model, nothing learnt".to_owned(),
-        |learnt| format!("tail {}, {} flights learnt", learnt.tail, learnt.ledger.len()),
+        |learnt| format!("tail {}, {} learnt", learnt.tail, counted(learnt.ledger.len(), "flight")),
     );
     format!("{} ({}), {learnt}", aircraft.name(), aircraft.type_code())
 }

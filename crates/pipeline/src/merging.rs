@@ -176,15 +176,17 @@ fn settle(mut merged: ModelFile) -> Result<ModelFile, MergeError> {
     Ok(merged)
 }
 
-/// Flights from which on a table alone is a table on purpose: fewer may all have flown outside it, and taught a table alone until the
-/// whole model was learnt from the first flight on.
+/// Flights within the table from which on a table alone is a table on purpose: fewer taught a table alone until the whole model was
+/// learnt from the first flight on.
 const ON_PURPOSE: usize = 3;
 
 /// Whether more than the table is learnt: not where a part with flights enough knows its table alone, on purpose.
 fn remainder_of(parts: &[Part]) -> RemainderChoice {
     let is_table_alone = |part: &Part| {
-        let learnt = part.model.learnt.as_ref();
-        learnt.is_some_and(|learnt| learnt.baseline.is_none() && learnt.ledger.len() >= ON_PURPOSE)
+        part.model.learnt.as_ref().is_some_and(|learnt| {
+            let within = learnt.ledger.iter().filter(|entry| entry.segments > entry.outside_table);
+            learnt.baseline.is_none() && within.count() >= ON_PURPOSE
+        })
     };
     let alone = parts.iter().any(is_table_alone);
     if alone { RemainderChoice::Leave } else { RemainderChoice::Learn }

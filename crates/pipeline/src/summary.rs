@@ -1,6 +1,6 @@
 //! `summary.json` and the table that a person reads.
 
-use core::fmt::Write as _;
+use core::fmt::{Display, Write as _};
 
 use serde::{Deserialize, Serialize};
 
@@ -319,9 +319,9 @@ pub const NO_SEGMENT: &str = "No stabilised segment was found: `cruisefit segmen
      criterion cost, --criteria names other criteria.\n";
 
 /// A number and its noun.
-pub fn counted(number: usize, noun: &str) -> String {
+pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, noun: &str) -> String {
     let ending = if noun.ends_with('s') { "es" } else { "s" };
-    if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}{ending}") }
+    if number == N::from(1) { format!("1 {noun}") } else { format!("{number} {noun}{ending}") }
 }
 
 /// What rounds to zero with so many decimals has no sign of its own.
@@ -385,6 +385,13 @@ fn push_row(row: &[String], widths: &[usize], columns: core::ops::Range<usize>, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!(counted(1, "segment"), "1 segment");
+        assert_eq!(counted(0_u64, "flight"), "0 flights");
+        assert_eq!(counted(2_usize, "class"), "2 classes");
+    }
 
     #[test]
     fn copies_and_other_files_are_said_where_there_are_any() {

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use flight::Timestamp;
-use pipeline::adaptation::{RemainderChoice, materials, rebuild, result_of, settled};
+use pipeline::adaptation::{choice_of, materials, rebuild, result_of, settled};
 use pipeline::file_names::page_file_of_tail;
 use pipeline::learning;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
+use pipeline::summary::counted;
 
 use crate::args::ForgetArgs;
 use crate::commands::Outcome;
@@ -44,10 +45,7 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
     };
     let stored = folder.load(tail)?;
     let place = find(&stored.flights, arguments)?;
-    let remainder = match &stored.model.learnt {
-        Some(learnt) if learnt.baseline.is_some() => RemainderChoice::Learn,
-        _ => RemainderChoice::Leave,
-    };
+    let remainder = choice_of(&stored.model, &begun);
     let mut flights = materials(stored.flights, stored.segments);
     let forgotten = flights.remove(place).known;
     let mut states: BTreeMap<String, TailState> = folder
@@ -73,11 +71,15 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
     }
     folder.commit(states)?;
     let text = format!(
-        "Flight {} of {} forgotten; tail {tail} in {} has learnt {left} others. summary.json and report.html are those of \
+        "Flight {} of {} forgotten; tail {tail} in {} has learnt {}. summary.json and report.html are those of \
          the last run of `adapt`, which learns the flight again if its report is still among those that it reads.\n",
         forgotten.entry.flight,
         forgotten.entry.start,
-        show(&arguments.folder)
+        show(&arguments.folder),
+        match left {
+            0 => "no other".to_owned(),
+            left => counted(left, "other"),
+        }
     );
     let figures = serde_json::json!({
         "tail": tail,

@@ -9,6 +9,7 @@ use crate::folder::stored_of;
 use crate::models::{check_model_replaceable, read_model, write_model};
 use pipeline::merging::{self, Merging, Part};
 use pipeline::model_file::ModelFile;
+use pipeline::summary::counted;
 
 /// Runs the command.
 ///
@@ -47,8 +48,9 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         _ => "All flights were learnt again from their segments, as if at once.\n".to_owned(),
     };
     let text = format!(
-        "{flights} flights of {} models merged, written to {}\n{by}",
-        arguments.models.len(),
+        "{} of {} merged, written to {}\n{by}",
+        counted(flights, "flight"),
+        counted(arguments.models.len(), "model"),
         show(&arguments.output)
     );
     let figures = serde_json::json!({

@@ -20,7 +20,7 @@ use crate::models::model_of_bytes;
 use pipeline::model_file::{AppliedRecord, LawState, Learnt, ModelFile};
 use pipeline::monitoring::{self, MonitorDocument, Rows, SCHEMA as MONITOR};
 use pipeline::statistics::NORMAL_95;
-use pipeline::summary::{SCHEMA as SUMMARY, Summary, aligned};
+use pipeline::summary::{SCHEMA as SUMMARY, Summary, aligned, counted};
 
 /// What a gzip file begins with (RFC 1952, section 2.3.1).
 const GZIP: [u8; 2] = [0x1f, 0x8b];
@@ -86,7 +86,9 @@ fn document(path: &Path, text: &str) -> Result<Outcome, Failure> {
     let words = match document["schema"].as_str() {
         Some("cruisefit.diagnosis/1") => diagnosis::text(&document),
         Some(SUMMARY) => {
-            Summary::from_json(text).map_err(|error| Failure::bad_file(path, error))?.to_text()
+            let summary =
+                Summary::from_json(text).map_err(|error| Failure::bad_file(path, error))?;
+            summary.to_text() + &state::since(path, &summary)
         }
         Some(MONITOR) => {
             let document =
@@ -146,10 +148,10 @@ fn describe_initial(model: &ModelFile, text: &mut String) {
     let aircraft = model.initial.aircraft();
     let _ = writeln!(
         text,
-        "{} ({}), {} engines",
+        "{} ({}), {}",
         aircraft.name(),
         aircraft.type_code(),
-        aircraft.engines()
+        counted(aircraft.engines(), "engine")
     );
     let law = aircraft.tsfc_law();
     let _ = writeln!(
@@ -172,8 +174,8 @@ fn describe_initial(model: &ModelFile, text: &mut String) {
     let guide = &model.guide;
     let _ = writeln!(
         text,
-        "from {} points of a guide, lift coefficient {:.3} to {:.3}, Mach number {:.3} to {:.3}, residual {:.2} counts rms",
-        guide.points,
+        "from {} of a guide, lift coefficient {:.3} to {:.3}, Mach number {:.3} to {:.3}, residual {:.2} counts rms",
+        counted(guide.points, "point"),
         guide.lift_coefficient.0,
         guide.lift_coefficient.1,
         guide.mach.0,
@@ -186,9 +188,10 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
     let segments: u64 = learnt.ledger.iter().map(|entry| entry.segments).sum();
     let _ = writeln!(
         text,
-        "Learnt from {} flights of tail {} ({segments} segments) by {}, criteria {}; {:.0} % of the nodes informed{}",
-        learnt.ledger.len(),
+        "Learnt from {} of tail {} ({}) by {}, criteria {}; {:.0} % of the nodes informed{}",
+        counted(learnt.ledger.len(), "flight"),
         learnt.tail,
+        counted(segments, "segment"),
         learnt.law.told(),
         learnt.criteria,
         100.0 * model.informed_nodes(),
@@ -211,10 +214,10 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
     if let Some(level) = learnt.baseline.as_ref().and_then(Baseline::gauges) {
         let _ = writeln!(
             text,
-            "tank gauges against the flow meters: {:+.2} ± {:.2} % of what is burnt ({} flights)",
+            "tank gauges against the flow meters: {:+.2} ± {:.2} % of what is burnt ({})",
             100.0 * level.mean,
             100.0 * NORMAL_95 * level.deviation,
-            level.flights
+            counted(level.flights, "flight")
         );
     }
 }
@@ -225,9 +228,9 @@ fn describe_effects(model: &ModelFile, text: &mut String) {
         let from = &record.diagnosis;
         let _ = writeln!(
             text,
-            "Applied: {}, from {} flights of tail {} ({} to {}), probability {:.2}",
+            "Applied: {}, from {} of tail {} ({} to {}), probability {:.2}",
             record.told(),
-            from.flights,
+            counted(from.flights, "flight"),
             from.tail,
             from.first,
             from.last,

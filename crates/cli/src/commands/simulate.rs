@@ -1,5 +1,6 @@
 //! `cruisefit simulate`: cruise reports of a virtual aircraft.
 
+use pipeline::summary::counted;
 use simulate::{Plan, Simulation, Switch};
 
 use crate::args::SimulateArgs;
@@ -39,7 +40,8 @@ pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcom
         n => format!(" ({n} were drawn again)"),
     };
     let text = format!(
-        "{flights} flights{again} written to {}: one folder per tail, TRUTH.json{}\n",
+        "{}{again} written to {}: one folder per tail, TRUTH.json{}\n",
+        counted(flights, "flight"),
         show(&arguments.output),
         if simulation.plan().fleet.is_some() { ", EVENTS.csv" } else { "" }
     );

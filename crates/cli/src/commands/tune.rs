@@ -14,6 +14,7 @@ use crate::progress::Progress;
 use crate::reading::FlightRead;
 use pipeline::adaptation::refuse_impossible;
 use pipeline::model_file::{LawSettings, ModelFile};
+use pipeline::summary::counted;
 
 /// Runs the command.
 ///
@@ -64,7 +65,8 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         })
         .collect();
     let segments: usize = flights.iter().map(Vec::len).sum();
-    let mut text = format!("{} flights, {segments} segments\n", flights.len());
+    let mut text =
+        format!("{}, {}\n", counted(flights.len(), "flight"), counted(segments, "segment"));
     let steps = search(arguments, &mut model, &flights, &mut text)?;
     write_model(&model, &arguments.output)?;
     let figures = serde_json::json!({

@@ -9,6 +9,7 @@ use pipeline::learnt_flights;
 use pipeline::model_file::ModelFile;
 use pipeline::reading::FlightRead;
 use pipeline::segments_table;
+use pipeline::summary::counted;
 
 use super::state::{self, FileState, State, TailState};
 use crate::failure::Failure;
@@ -98,7 +99,8 @@ impl Salvage {
                 ))
             }
             Learnt::Number(learnt) if at_hand.len() < *learnt => Some(format!(
-                "it has learnt {learnt} flights, the usable reports are of {}",
+                "it has learnt {}, the usable reports are of {}",
+                counted(*learnt, "flight"),
                 at_hand.len()
             )),
             Learnt::Number(_) => None,

@@ -302,7 +302,7 @@ fn copies_are_found_by_every_command_and_said_once() {
         run("diagnose", &[with_model[0], with_model[1], "-o".as_ref(), diagnosis.as_os_str()]);
     assert!(diagnosed.stdout.contains("insufficient data"), "{}", diagnosed.stdout);
     let ran = run("tune", &[with_model[0], with_model[1], "-o".as_ref(), tuned.as_os_str()]);
-    assert!(ran.stdout.starts_with("1 flights"), "{}", ran.stdout);
+    assert!(ran.stdout.starts_with("1 flight, "), "{}", ran.stdout);
     let ran = run("evaluate", &with_model);
     assert!(ran.stdout.contains("1 report read, 0 already known, 8 copies"), "{}", ran.stdout);
     let (segments, learnt) = (output("s.csv"), output("o"));
@@ -420,22 +420,27 @@ fn a_half_copied_report_is_replaced_by_the_whole_one() {
 
 #[test]
 fn a_forgotten_flight_was_never_learnt() {
-    for law in ["bayes", "paper"] {
+    let laws: [&[&str]; 3] =
+        [&["--law", "bayes"], &["--law", "paper"], &["--law", "bayes", "--no-remainder"]];
+    for law in laws {
         let scratch = tempfile::tempdir().unwrap();
         let model = initial_model(scratch.path());
         let (output, without) = (scratch.path().join("out"), scratch.path().join("without"));
-        adapt(&model, &output, &reports(1..=8), &["--law", law]).expect(0);
+        adapt(&model, &output, &reports(1..=8), law).expect(0);
         let forget = |flight: &str, tail: &str| {
             cruisefit(&["forget", output.to_str().unwrap(), "--tail", tail, "--flight", flight])
         };
         forget("0099", "SIM-01").expect(2).says("has not learnt a flight \"0099\"");
         forget("0004", "SIM-99").expect(2).says("it holds SIM-01");
+        let show = || cruisefit(&["show", output.to_str().unwrap()]);
+        assert!(!show().stdout.contains("forgotten"));
         forget("0004", "SIM-01").expect(0);
+        assert!(show().stdout.contains("forgotten: tail SIM-01 has learnt 7 now"));
         let others: Vec<PathBuf> = (1..=8).filter(|flight| *flight != 4).map(report).collect();
-        adapt(&model, &without, &others, &["--law", law]).expect(0);
+        adapt(&model, &without, &others, law).expect(0);
         same_tail(&output, &without);
         // It can be learnt again.
-        adapt(&model, &output, &[report(4)], &["--law", law]).expect(0);
+        adapt(&model, &output, &[report(4)], law).expect(0);
         assert_eq!(flights_of(&output).len(), 8);
     }
 }

@@ -10,7 +10,8 @@ use pipeline::diagnosis_words::variable_words;
 use super::{Tail, engines, map, unseen};
 use crate::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
 use crate::place::Detail;
-use crate::text::{capitalised, counted, signed};
+use crate::text::{capitalised, signed};
+use pipeline::summary::counted;
 
 /// Width of a bin where 60 of them suffice, %.
 const BIN_PERCENT: f64 = 0.25;

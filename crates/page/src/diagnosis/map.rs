@@ -6,7 +6,8 @@ use maud::{Markup, html};
 use super::Tail;
 use crate::chart::{Axis, Chart, Key, legend};
 use crate::shade;
-use crate::text::{counted, signed};
+use crate::text::signed;
+use pipeline::summary::counted;
 
 /// Cells along Mach number and lift coefficient, about.
 const COLUMNS: usize = 9;

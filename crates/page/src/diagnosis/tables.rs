@@ -11,7 +11,8 @@ use pipeline::diagnosis_words::{left_out_words, measurement_words, region_words}
 
 use super::causes::named;
 use crate::place::Detail;
-use crate::text::{capitalised, counted, signed, three_digits};
+use crate::text::{capitalised, signed, three_digits};
+use pipeline::summary::counted;
 
 /// The folded part of a tail's section.
 pub(super) fn tables(diagnosed: &DiagnosedTail, detail: Detail) -> Markup {

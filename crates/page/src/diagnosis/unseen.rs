@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::Tail;
 use super::figures::{chart, mean};
 use crate::chart::{Axis, Key, Mark, dates, legend};
-use crate::text::counted;
+use pipeline::summary::counted;
 
 /// The chart; nothing where closure is not measured.
 pub(super) fn unseen(tail: &Tail<'_>) -> Markup {

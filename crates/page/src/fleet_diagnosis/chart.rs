@@ -8,7 +8,7 @@ use pipeline::fleet_diagnosis::{FleetTailRecord, size_words};
 use super::words::{named, unit_words};
 use super::{Fleet, Found, Whose};
 use crate::chart::{Axis, Chart, Key, Mark, legend};
-use crate::text::counted;
+use pipeline::summary::counted;
 
 /// Effects that are drawn, those found most often; the table has all. Our choice: some three screens.
 const MOST_PANELS: usize = 8;

@@ -11,7 +11,8 @@ use pipeline::fleet_diagnosis::{
 };
 
 use super::{Fleet, Found, Whose};
-use crate::text::{capitalised, counted};
+use crate::text::capitalised;
+use pipeline::summary::counted;
 
 /// Tails named for each effect; the table has all. Our choice: a line or two.
 const TAILS_NAMED: usize = 6;

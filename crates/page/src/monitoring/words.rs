@@ -7,7 +7,8 @@ use pipeline::monitoring::{
 };
 
 use super::{day, figure};
-use crate::text::{counted, signed, signed_tenths};
+use crate::text::{signed, signed_tenths};
+use pipeline::summary::counted;
 
 /// Whether the tail burns more or less than its book says.
 fn burns_otherwise(tail: &TailDocument) -> bool {

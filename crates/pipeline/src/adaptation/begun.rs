@@ -6,6 +6,7 @@ use super::RemainderChoice;
 use crate::checksum::sha256;
 use crate::learning::{self, LawChoice, LearningError};
 use crate::model_file::{ModelFile, PaperSettings};
+use crate::summary::counted;
 
 /// The law that tails are to learn by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,8 +65,8 @@ impl Start<'_> {
         if let Some(learnt) = &self.model.learnt {
             tracing::warn!(
                 tail,
-                "the model given has learnt {} flights of tail {}; adaptation starts from its initial part{}",
-                learnt.ledger.len(),
+                "the model given has learnt {} of tail {}; adaptation starts from its initial part{}",
+                counted(learnt.ledger.len(), "flight"),
                 learnt.tail,
                 if self.model.applied.is_empty() { "" } else { " and the effects applied to it" }
             );
@@ -169,6 +170,21 @@ impl Begun {
             }
         }
     }
+}
+
+/// What was chosen for a tail that is stored when it was begun with this (its SHA-256).
+///
+/// A model without a remainder does not tell: its flights may all lie outside the table, or, of programs that learnt a table from fewer
+/// than three, be few.
+#[must_use]
+pub fn choice_of(stored: &ModelFile, begun: &str) -> RemainderChoice {
+    let Some(learnt) = &stored.learnt else { return RemainderChoice::Learn };
+    if learnt.baseline.is_some() {
+        return RemainderChoice::Learn;
+    }
+    let law = LawChoice::Bayes(stored.settings.bayes);
+    let all = Begun::of(stored, &law, &learnt.criteria, RemainderChoice::Learn);
+    if all.asked == begun { RemainderChoice::Learn } else { RemainderChoice::Leave }
 }
 
 /// Law `bayes` that learns the table alone, in what a tail was begun with.

@@ -60,7 +60,7 @@ pub fn of_tail_words(fleets: &[FleetRecord], tail: &str) -> Option<String> {
 #[must_use]
 pub fn fleet_text(fleet: &DiagnosedFleet) -> String {
     let diagnosis = &fleet.diagnosis;
-    let flights = fleet.tails.iter().map(|member| member.reduced.flights).sum();
+    let flights: usize = fleet.tails.iter().map(|member| member.reduced.flights).sum();
     let mut text = format!(
         "Fleet {}: {}, {}, {}.\n",
         fleet.aircraft_type,

@@ -1,12 +1,36 @@
 //! What the `STATE.ron` of a folder names.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use pipeline::folder_state::{State, TailState};
-use pipeline::summary::{aligned, counted};
+use pipeline::summary::{Summary, TailSummary, aligned, counted};
 
 use crate::commands::Outcome;
 use crate::failure::Failure;
+use crate::folder::state::NAME;
+
+/// In which tails of its folder a summary is not what they have learnt by now: `forget` leaves it as the last run of `adapt` made it.
+/// Nothing where it lies in no folder that `adapt` keeps.
+pub(super) fn since(summary_path: &Path, summary: &Summary) -> String {
+    let path = summary_path.with_file_name(NAME);
+    let text = std::fs::read_to_string(path).ok();
+    let Some(state) = text.and_then(|text| State::from_text(&text).ok()) else {
+        return String::new();
+    };
+    let other = |tail: &&TailSummary| {
+        state.tails.get(&tail.tail).map_or(0, |now| now.summary.flights) != tail.flights
+    };
+    summary.tails.iter().filter(other).fold(String::new(), |mut words, tail| {
+        let now = state.tails.get(&tail.tail).map_or(0, |now| now.summary.flights);
+        let _ = writeln!(
+            words,
+            "Since that run of adapt flights were forgotten: tail {} has learnt {now} now.",
+            tail.tail
+        );
+        words
+    })
+}
 
 /// The tails of a state, each with its flights and its model.
 ///
@@ -15,7 +39,7 @@ use crate::failure::Failure;
 pub(super) fn outcome(path: &Path, text: &str) -> Result<Outcome, Failure> {
     let state = State::from_text(text).map_err(|error| Failure::bad_file(path, error))?;
     let tails: Vec<(&String, &TailState)> = state.tails.iter().collect();
-    let flights = tails.iter().map(|(_, of)| of.summary.flights).sum();
+    let flights: usize = tails.iter().map(|(_, of)| of.summary.flights).sum();
     let mut words = format!(
         "State of a folder that adapt keeps: generation {}, {}, {}. The folder itself shows more.\n",
         state.generation,
