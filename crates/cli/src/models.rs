@@ -9,6 +9,17 @@ use crate::folder::{ModelsFound, waiting_model};
 use pipeline::model_file::ModelFile;
 use pipeline::models::Models;
 
+/// The file behind an argument that stands for one model: the file itself, or that of a folder's only model.
+///
+/// # Errors
+/// A folder that holds none, several, or a damaged one.
+pub(crate) fn file_of_model(path: &Path) -> Result<PathBuf, Failure> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    Ok(only_model_of(path)?.0)
+}
+
 /// Reads a model file, or the only model of a folder.
 ///
 /// # Errors
@@ -20,18 +31,22 @@ pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
             None => model_of_text(path, &read_text(path)?),
         };
     }
-    let ModelsFound { mut models, damaged } = models_of(path)?;
+    Ok(only_model_of(path)?.1)
+}
+
+fn only_model_of(folder: &Path) -> Result<(PathBuf, ModelFile), Failure> {
+    let ModelsFound { mut models, damaged } = models_of(folder)?;
     if let Some((_, failure)) = damaged.into_iter().next() {
         return Err(failure);
     }
     match models.pop() {
-        Some((_, model)) if models.is_empty() => Ok(model),
+        Some(only) if models.is_empty() => Ok(only),
         Some((last, _)) => {
             let reason =
                 format!("{} models; one is needed here, such as {}", models.len() + 1, show(&last));
-            Err(Failure::bad_file(path, reason))
+            Err(Failure::bad_file(folder, reason))
         }
-        None => Err(Failure::bad_file(path, "a folder without a model")),
+        None => Err(Failure::bad_file(folder, "a folder without a model")),
     }
 }
 

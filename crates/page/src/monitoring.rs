@@ -301,6 +301,11 @@ fn pieces<'a>(course: &'a [(f64, f64)], changes: &[f64]) -> Vec<&'a [(f64, f64)]
 
 fn changes(tail: &TailDocument) -> Markup {
     html! {
+        @if tail.flights_without_segments > 0 {
+            p.note {
+                (counted(tail.flights_without_segments, "learnt flight")) " beside these: no segment inside the table."
+            }
+        }
         @if tail.flights_without_engines > 0 {
             p.note {
                 (tail.flights_without_engines) " of " (counted(tail.flights.len(), "flight"))

@@ -244,7 +244,7 @@ impl Group<'_> {
 
     fn compared(&self) -> Compared {
         let starts = || self.flights.iter().map(|flight| flight.reduced.identity.start);
-        let learnt = self.model.learnt.as_ref();
+        let learnt = self.model.learnt.as_ref().filter(|_| self.model.has_learnt_segments());
         Compared {
             aircraft: self.model.initial.aircraft().name().to_owned(),
             law: learnt.map(|learnt| learnt.law.told()),

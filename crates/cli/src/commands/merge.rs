@@ -6,7 +6,7 @@ use crate::args::MergeArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::folder::stored_of;
-use crate::models::{check_model_replaceable, read_model, write_model};
+use crate::models::{check_model_replaceable, file_of_model, read_model, write_model};
 use pipeline::merging::{self, Merging, Part};
 use pipeline::model_file::ModelFile;
 use pipeline::summary::counted;
@@ -64,8 +64,9 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
 
 /// A model with its flights and segments, where it is one of a folder of `adapt`.
 fn part_of(path: &Path) -> Result<Part, Failure> {
-    if let Some(stored) = stored_of(path)? {
+    let path = file_of_model(path)?;
+    if let Some(stored) = stored_of(&path)? {
         return Ok(Part { model: stored.model, flights: Some((stored.flights, stored.segments)) });
     }
-    Ok(Part { model: read_model(path)?, flights: None })
+    Ok(Part { model: read_model(&path)?, flights: None })
 }

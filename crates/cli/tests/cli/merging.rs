@@ -56,6 +56,10 @@ fn merged_models_are_the_model_of_all_flights() {
         merge(case, &merged).expect(0).prints("All flights were learnt again");
         assert_eq!(std::fs::read_to_string(merged).unwrap(), whole, "case {place}");
     }
+    // A folder of one tail stands for its model.
+    let merged = scratch.join("of-folders.ron");
+    merge(&[&scratch.join("first"), &scratch.join("second/models")], &merged).expect(0);
+    assert_eq!(std::fs::read_to_string(merged).unwrap(), whole);
     merge(&[&odd, &first], &scratch.join("twice.ron")).expect(2).says("it would count twice");
 }
 

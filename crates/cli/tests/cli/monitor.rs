@@ -55,6 +55,44 @@ fn tables_json_and_text_agree_and_hold_their_schema() {
     assert_eq!(numbers(&flights["deviation_percent"])[0].to_bits(), deviation.to_bits());
 }
 
+/// By hand: a flight that gives no segment was flown all the same, so that the rate of flights is that of twelve.
+#[test]
+fn flights_without_a_segment_count_in_the_rate_of_flights() {
+    let folder = tempfile::tempdir().unwrap();
+    let rate_of = |folder: &Path| {
+        let text = monitor(folder, &["--json"]).expect(0).stdout;
+        let tail = serde_json::from_str::<Value>(&text).unwrap()["tails"][0].take();
+        let rate = tail["cost"]["flights_per_year"].as_f64().unwrap();
+        (rate, tail["flights_without_segments"].clone())
+    };
+    let mut cut = reports();
+    // Over less than a month there is no rate.
+    let last = std::fs::read_to_string(&cut[11]).unwrap();
+    cut[11] = folder.path().join("last.txt");
+    std::fs::write(&cut[11], last.replace("2019-04-08", "2019-06-08")).unwrap();
+    let (model, whole) = (initial_model(folder.path()), folder.path().join("whole"));
+    adapt(&model, &whole, &cut, &[]).expect(0);
+    for place in [4, 7] {
+        // Three rows, in which it rolls.
+        let text = std::fs::read_to_string(&cut[place]).unwrap();
+        let head = text.lines().position(|line| line.starts_with("TIME")).unwrap();
+        let few: String = text.lines().take(head + 5).flat_map(|line| [line, "\n"]).collect();
+        let few = few.replace("  -0.1  ", "  20.1  ").replace("  -0.2  ", "  20.2  ");
+        cut[place] = folder.path().join(format!("cut-{place}.txt"));
+        std::fs::write(&cut[place], few).unwrap();
+    }
+    let output = folder.path().join("cut");
+    adapt(&model, &output, &cut, &[]).expect(0);
+    assert_eq!(rate_of(&whole).1, Value::from(0));
+    assert_eq!(rate_of(&output), (rate_of(&whole).0, Value::from(2)));
+    let stored = monitor(&output, &[]).expect(0).stdout;
+    assert!(stored.contains("2 learnt flights beside these, no segment inside the table"));
+    // The same from model and segments, where the table of flights is missing.
+    std::fs::remove_file(output.join("deviations/SIM-01.csv")).unwrap();
+    let anew = monitor(&output, &[]).expect(0).stdout;
+    assert_eq!(anew, stored);
+}
+
 /// Against the fuel factor of `evaluate`, which is the mean over flights of the same deviation from the book, and against the error that
 /// `adapt` wrote: 100 ln(recorded/predicted) of the initial model before the first flight, because nothing had been learnt then.
 #[test]

@@ -3,7 +3,10 @@
 use flight::{Segment, Timestamp};
 use monitor::CONDITIONS;
 
-use super::flights::{MeanConditions, MonitoredFlight, flights_of, flights_with, monitored};
+use super::flights::{
+    MeanConditions, MonitoredFlight, flights_of, flights_with, monitored,
+    with_those_without_segment,
+};
 use crate::evaluation::{BookEffects, TailResult, evaluate_book, evaluate_model};
 use crate::learning::{LearningCurve, LearningError, curve_of};
 use crate::model_file::ModelFile;
@@ -62,6 +65,7 @@ impl TailDeviations {
         let learnt = evaluate_model(model, Predicts::WholeModel, segments);
         let aircraft = model.initial.aircraft();
         let flights = monitored(segments.iter().zip(book), &learnt, &curve, aircraft.engines());
+        let flights = with_those_without_segment(model, flights);
         Ok(Self::of_flights(aircraft.type_code(), &model.told(), flights))
     }
 

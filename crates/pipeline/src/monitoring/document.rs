@@ -96,6 +96,9 @@ pub struct TailDocument {
     /// Flights without fuel flow of each engine, where others have it: they are in the series of no engine.
     #[serde(default)]
     pub flights_without_engines: usize,
+    /// Learnt flights beside these that show nothing: no segment of them is inside the table.
+    #[serde(default)]
+    pub flights_without_segments: usize,
     /// Recorded events.
     pub events: Vec<EventDocument>,
     /// Months.

@@ -9,6 +9,7 @@ use units::{Pressure, PressureAltitude, Temperature};
 
 use crate::evaluation::TailResult;
 use crate::learning::{Forecast, LearningCurve, deviation_percent};
+use crate::model_file::ModelFile;
 use crate::segments_table::Evaluated;
 
 /// One flight of a tail; deviations are 100·ln(recorded/predicted) fuel flow.
@@ -109,7 +110,7 @@ struct Shown<'s> {
     learnt: Option<f64>,
 }
 
-/// The flights of a tail that has learnt, in the order in which it learnt them.
+/// The flights of a tail that has learnt, in the order of flying.
 #[must_use]
 pub fn flights_of(result: &TailResult) -> Vec<MonitoredFlight> {
     flights_with(result, &result.learning_curve())
@@ -118,7 +119,33 @@ pub fn flights_of(result: &TailResult) -> Vec<MonitoredFlight> {
 /// The same with this learning curve.
 pub(super) fn flights_with(result: &TailResult, curve: &LearningCurve) -> Vec<MonitoredFlight> {
     let book = result.rows.iter().map(|row| &row.segment).zip(result.book.iter().copied());
-    monitored(book, &result.after, curve, result.model.initial.aircraft().engines())
+    let engines = result.model.initial.aircraft().engines();
+    with_those_without_segment(&result.model, monitored(book, &result.after, curve, engines))
+}
+
+/// In the order of flying these flights of a model and those that gave it no segment: they show nothing, but were flown.
+pub(super) fn with_those_without_segment(
+    model: &ModelFile,
+    mut flights: Vec<MonitoredFlight>,
+) -> Vec<MonitoredFlight> {
+    let ledger = model.learnt.iter().flat_map(|learnt| &learnt.ledger);
+    flights.extend(ledger.filter(|entry| entry.segments == 0).filter_map(|entry| {
+        Some(MonitoredFlight {
+            flight: entry.flight.clone(),
+            start: entry.start.parse().ok()?,
+            segments: 0,
+            outside_table: 0,
+            book: None,
+            learnt: None,
+            before_learning: None,
+            engines: Vec::new(),
+            learnt_over_book_percent: 0.0,
+            cruise_fuel_kg: 0.0,
+            conditions: MeanConditions::default(),
+        })
+    }));
+    flights.sort_by(|one, other| (one.start, &one.flight).cmp(&(other.start, &other.flight)));
+    flights
 }
 
 /// The learning curve that flights hold.

@@ -93,6 +93,10 @@ fn tails(document: &MonitorDocument) -> Columns {
         "flights_without_engines",
         rows.iter().map(|tail| tail.flights_without_engines as u64),
     );
+    columns.count(
+        "flights_without_segments",
+        rows.iter().map(|tail| tail.flights_without_segments as u64),
+    );
     columns.text("from", rows.iter().map(|tail| tail.from.clone()));
     columns.text("to", rows.iter().map(|tail| tail.to.clone()));
     figure(&mut columns, "deviation_percent", rows, |tail| Some(tail.deviation_percent));

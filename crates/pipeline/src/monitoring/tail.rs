@@ -76,8 +76,10 @@ pub struct MonitoredTail<'a> {
     flights: Vec<&'a MonitoredFlight>,
     reference: MeanConditions,
     of_level: &'a [([f64; CONDITIONS], f64)],
-    /// Flights a year, those without a segment inside the table too; `None` over less than a month.
+    /// Flights a year, those without a segment too; `None` over less than a month.
     recorded_per_year: Option<f64>,
+    /// Flights that show nothing.
+    without_segments: usize,
     events: Vec<&'a Event>,
     history: History,
     /// Deviations with the flights' weights; what changed is read from the normalised ones.
@@ -187,6 +189,7 @@ impl<'a> MonitoredTail<'a> {
             tail,
             aircraft_type: &deviations.aircraft_type,
             model: &deviations.model,
+            without_segments: deviations.flights.len() - flights.len(),
             flights,
             reference,
             of_level: &deviations.of_level,
@@ -233,6 +236,7 @@ impl<'a> MonitoredTail<'a> {
                 0 => 0,
                 recorded => self.flights.len() - recorded,
             },
+            flights_without_segments: self.without_segments,
             events: self.event_documents(),
             flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
             months,

@@ -14,9 +14,12 @@ pub enum Rows {
     Months,
 }
 
-/// The text for standard output.
+/// The text for standard output; nothing where no tail has shown anything, which is told tail by tail.
 #[must_use]
 pub fn text(document: &MonitorDocument, rows: Rows) -> String {
+    if document.tails.is_empty() {
+        return String::new();
+    }
     let mut text =
         "Deviation of fuel flow from the book, 100 ln(recorded/predicted), %\n".to_owned();
     text.push_str(&match rows {
@@ -163,6 +166,14 @@ fn months(document: &MonitorDocument) -> String {
 }
 
 fn append_changes(tail: &TailDocument, text: &mut String) {
+    if tail.flights_without_segments > 0 {
+        let _ = writeln!(
+            text,
+            "{}: {} beside these, no segment inside the table",
+            tail.tail,
+            counted(tail.flights_without_segments, "learnt flight")
+        );
+    }
     if tail.flights_without_engines > 0 {
         let _ = writeln!(
             text,
