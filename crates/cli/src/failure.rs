@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
+use pipeline::summary::counted;
+
 pub(crate) use pipeline::reading::RefusedReport;
 
 /// Exit status 0: everything asked for was done.
@@ -144,7 +146,7 @@ pub(crate) enum Failure {
         failed: usize,
     },
     /// Values out of tolerance in `golden check`.
-    #[error("{count} values out of tolerance")]
+    #[error("{} out of tolerance", counted(*count, "value"))]
     GoldenDiffers {
         /// How many.
         count: usize,

@@ -26,6 +26,7 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
             book: None,
         },
         book_half_width95_percent: None,
+        fuel_factor_percent: None,
         mean_error_half_width95_percent: None,
         interval95_coverage: None,
         mean_error_within_percent: None,

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use crate::chart::{Axis, Chart, Mark};
 use crate::text::{count, percent, plain, signed};
 use pipeline::statistics::fuel_factor_percent;
-use pipeline::summary::{RefusedSummary, ReportsSummary, TailSummary};
+use pipeline::summary::{FactorSummary, RefusedSummary, ReportsSummary, TailSummary};
 
 /// Refused reports that are listed; more would make the page unreadable.
 const MOST_REFUSED: usize = 200;
@@ -21,6 +21,22 @@ pub(crate) struct FleetRow<'a> {
     pub(crate) link: Option<String>,
 }
 
+/// The fuel factor of a tail; where an older program stored it without, the one that its mean error over segments makes.
+pub(crate) fn fuel_factor(summary: &TailSummary) -> Option<FactorSummary> {
+    let errors = &summary.fuel_flow_error_percent;
+    summary.fuel_factor_percent.or_else(|| {
+        let half = match errors.book {
+            Some(_) => summary.book_half_width95_percent,
+            None => summary.mean_error_half_width95_percent,
+        };
+        let mean = errors.against_book().mean?;
+        Some(FactorSummary {
+            value: fuel_factor_percent(mean),
+            ci95: half.map(|half| [mean - half, mean + half].map(fuel_factor_percent)),
+        })
+    })
+}
+
 impl FleetRow<'_> {
     /// Mean error of the initial (or given) model, %.
     fn deviation(&self) -> Option<f64> {
@@ -29,7 +45,7 @@ impl FleetRow<'_> {
 
     /// What a planner multiplies the guide by, less 1, %.
     fn fuel_factor_percent(&self) -> Option<f64> {
-        self.summary.fuel_flow_error_percent.against_book().mean.map(fuel_factor_percent)
+        fuel_factor(self.summary).map(|factor| factor.value)
     }
 
     /// Half width of the deviation's 95 % interval, %.

@@ -271,7 +271,8 @@ fn how_to_read(adapted: bool) -> Markup {
                  (load sheet, heating value, sensors) does not average out within it: the interval counts flights, not segments."
             }
             dt { "fuel factor" }
-            dd { "By how many per cent fuel flow by the guide has to be raised to be the recorded one: 1/(1 − error) − 1. The guide is taken by its \
+            dd { "By how many per cent fuel flow by the guide has to be raised to be the recorded one, exp(d) − 1 with d the mean over flights of a flight's mean \
+                ln(recorded/guide): flights count alike, however many segments they gave. The guide is taken by its \
                 own rows; “before” is a polynomial through them, which may miss them by some per cent. It is of all flights at the \
                 conditions flown; " code { "monitor" } " gives that of the level now, at the tail's mean conditions, which is another \
                 where the tail has changed or flies other routes." }

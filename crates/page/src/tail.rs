@@ -2,14 +2,15 @@
 
 use maud::{Markup, html};
 
+use crate::fleet::fuel_factor;
 use crate::place::{Detail, Place};
 use crate::text::{plain, signed};
 use crate::view::TailView;
 use crate::{criteria, envelope, errors, performance, polars, relief, surface};
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
-use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
-use pipeline::summary::counted;
+use pipeline::statistics::{ErrorStatistics, error_percent};
+use pipeline::summary::{FactorSummary, counted};
 
 /// Deviation beyond which units or the guide are more probable causes than the aircraft, %: `add_an_aircraft` in the book.
 const RARELY_THE_AIRCRAFT_PERCENT: f64 = 15.0;
@@ -87,17 +88,13 @@ const FEWEST_OF_AN_INTERVAL: usize = 3;
 fn verdict(result: &TailResult, view: &TailView) -> Markup {
     let errors = &result.summary.fuel_flow_error_percent;
     let book = errors.book.and_then(|book| book.mean);
-    let Some(mean) = book.or(errors.before.mean) else {
+    let summary = &result.summary;
+    let Some(FactorSummary { value: factor, ci95 }) = fuel_factor(summary) else {
         return html! { p.verdict { "No segment lies inside the table: nothing can be said about this tail." } };
     };
-    let summary = &result.summary;
-    let half = match book {
-        Some(_) => summary.book_half_width95_percent,
-        None => summary.mean_error_half_width95_percent,
-    };
     let few = summary.flights < FEWEST_OF_AN_INTERVAL;
-    let half = half.filter(|_| !few);
-    let within = half.is_some_and(|half| mean.abs() <= half);
+    let interval = ci95.filter(|_| !few);
+    let within = interval.is_some_and(|[low, high]| low <= 0.0 && high >= 0.0);
     let flights = counted(summary.flights, "flight");
     let says = match book {
         Some(_) => "its guide says",
@@ -115,18 +112,17 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
                     @if within { "It burns what " (says) ", as far as these flights tell" }
                     @else {
                         @if few { "On " (flights) " it burned " } @else { "It burns " }
-                        (format!("{:.2}", fuel_factor_percent(mean).abs())) " % "
-                        @if mean > 0.0 { "more" } @else { "less" } " than " (says)
+                        (format!("{:.2}", factor.abs())) " % "
+                        @if factor > 0.0 { "more" } @else { "less" } " than " (says)
                     }
                 }
-                ": fuel factor " (signed(Some(fuel_factor_percent(mean)))) " %"
-                @if let Some(half) = half {
-                    " (" (signed(Some(fuel_factor_percent(mean - half)))) " to "
-                    (signed(Some(fuel_factor_percent(mean + half)))) " %, 95 %)"
-                }
+                ": fuel factor " (signed(Some(factor))) " %"
+                @if let Some([low, high]) = interval { " (" (signed(Some(low))) " to " (signed(Some(high))) " %, 95 %)" }
                 @if few { ", too few flights for an interval: others may show another" } @else { ", mean of all flights" }
-                ". As an error, in % of recorded fuel flow: " (signed(Some(mean)))
-                @if let Some(half) = half { " ± " (plain(Some(half))) }
+                ". As an error, in % of recorded fuel flow: " (signed(Some(error_percent(factor))))
+                @if let Some([low, high]) = interval.map(|ends| ends.map(error_percent)) {
+                    " (" (signed(Some(low))) " to " (signed(Some(high))) ")"
+                }
                 "."
                 @if let Some(period) = view.period() { " Flown " (period) "." }
             }
@@ -142,7 +138,7 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
                     " % of scatter on the same flights."
                 }
             }
-            @if mean.abs() > RARELY_THE_AIRCRAFT_PERCENT {
+            @if error_percent(factor).abs() > RARELY_THE_AIRCRAFT_PERCENT {
                 p { "A deviation beyond ±" (RARELY_THE_AIRCRAFT_PERCENT) " % is rarely the aircraft: check units, masses and the guide first." }
             }
         }

@@ -95,11 +95,11 @@ fn numbers_are_those_of_the_document() {
         assert!(page.contains(&format!("data-v=\"{std}\">{std:.2}</td>")), "{when} {std}");
     }
     assert!(page.contains(&format!("{} flights", json["tails"][0]["flights"])));
-    // An error e is a share of what was recorded; what is said of the prediction is e/(100 − e) of it.
-    let error = errors["book"]["mean"].as_f64().unwrap();
+    // A fuel factor f is a share of the prediction; of what was recorded it is f/(100 + f).
+    let of_predicted = json["tails"][0]["fuel_factor_percent"]["value"].as_f64().unwrap();
+    let error = 100.0 * of_predicted / (100.0 + of_predicted);
     let before = errors["before"]["mean"].as_f64().unwrap();
     assert!(page.contains(&format!("its own mean error is {before:+.2} %, “before”")), "{before}");
-    let of_predicted = 100.0 * error / (100.0 - error);
     assert!((of_predicted - error).abs() > 0.01, "the two differ: {error}");
     assert!(
         page.contains(&format!("It burns {of_predicted:.2} % more than its guide says")),

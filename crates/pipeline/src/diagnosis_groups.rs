@@ -86,7 +86,7 @@ pub fn group<'a>(
     flights.sort_by(FlightRead::order);
     for flight in flights {
         let Some(&model) = models.get(&flight.reduced.identity.tail) else { continue };
-        if has_learnt(model, &flight) {
+        if model.has_learnt(&flight.reduced.identity) {
             let finding = format!(
                 "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",
                 flight.reduced.identity.tail,
@@ -243,7 +243,9 @@ impl Group<'_> {
     }
 
     fn compared(&self) -> Compared {
-        let starts = || self.flights.iter().map(|flight| flight.reduced.identity.start);
+        // Those without a segment are not among the flights that are diagnosed.
+        let shown = || self.flights.iter().filter(|flight| !flight.reduced.segments.is_empty());
+        let starts = || shown().map(|flight| flight.reduced.identity.start);
         let learnt = self.model.learnt.as_ref().filter(|_| self.model.has_learnt_segments());
         Compared {
             aircraft: self.model.initial.aircraft().name().to_owned(),
@@ -254,15 +256,4 @@ impl Group<'_> {
             last_flight: starts().max().map(|start| start.to_string()),
         }
     }
-}
-
-fn has_learnt(model: &ModelFile, flight: &FlightRead) -> bool {
-    let start = flight.reduced.identity.start.to_string();
-    model.learnt.as_ref().is_some_and(|learnt| {
-        learnt.ledger.iter().any(|entry| {
-            entry.tail == flight.reduced.identity.tail
-                && entry.flight == flight.reduced.identity.flight
-                && entry.start == start
-        })
-    })
 }

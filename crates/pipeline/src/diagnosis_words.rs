@@ -248,6 +248,10 @@ pub fn joined(effects: &[EffectId], between: &str) -> String {
 /// Why the data is too little.
 pub fn insufficient_words(reason: Insufficient) -> String {
     match reason {
+        Insufficient::NothingInside { segments: 0 } => {
+            "no stabilised segment was found (`cruisefit segment` with --explain tells why)"
+                .to_owned()
+        }
         Insufficient::NothingInside { segments } => {
             format!("none of {segments} segments is inside the drag table")
         }

@@ -9,6 +9,7 @@ use effects::ExtendedModel;
 use flight::{Observation, Segment, Timestamp};
 use lut::{Outside, SmoothCell, Table};
 
+use crate::fuel_factor;
 use crate::learning::{LearningCurve, curve_of};
 use crate::model_file::ModelFile;
 use crate::not_evaluated;
@@ -44,7 +45,7 @@ pub struct TailResult {
 pub struct TailCounts {
     /// All flights.
     pub flights: usize,
-    /// Flights that this run added.
+    /// Flights that this run added; of a model as it was given those that did not teach it.
     pub flights_new: usize,
     /// Samples of all flights.
     pub samples: u64,
@@ -96,6 +97,14 @@ impl TailResult {
             summary.book_half_width95_percent =
                 mean_half_width95_by_flight(&by_flight(&data, &book));
         }
+        let without_effects = data
+            .model
+            .initial
+            .effects()
+            .map(|_| evaluate_book(&data.model, BookEffects::None, &data.segments));
+        let of_book = without_effects.as_ref().unwrap_or(&book);
+        summary.fuel_factor_percent =
+            fuel_factor::of_all(&data.tail, &data.segments, of_book).as_ref().map(Into::into);
         Self { book, ..Self::put_together(data, before, after, summary) }
     }
 
@@ -126,7 +135,10 @@ impl TailResult {
         flights.sort_by(FlightRead::order);
         let counts = TailCounts {
             flights: flights.len(),
-            flights_new: flights.len(),
+            flights_new: flights
+                .iter()
+                .filter(|flight| !model.has_learnt(&flight.reduced.identity))
+                .count(),
             samples: flights.iter().map(|flight| flight.reduced.samples as u64).sum(),
         };
         let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
@@ -381,6 +393,7 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
         },
         mean_error_half_width95_percent: mean_half_width95_by_flight(&by_flight(data, before)),
         book_half_width95_percent: None,
+        fuel_factor_percent: None,
     }
 }
 

@@ -97,12 +97,7 @@ pub fn of_tail(
     evaluated: &[Option<Evaluated>],
 ) -> Vec<FuelFactor> {
     let mut groups: BTreeMap<(usize, i64), Group> = BTreeMap::new();
-    for (segment, evaluated) in segments.iter().zip(evaluated) {
-        let Some(predicted) = evaluated.and_then(|e| e.predicted_fuel_flow_kg_s) else { continue };
-        let ln_ratio = (segment.means.fuel_flow_total_kg_s / predicted).ln();
-        if !ln_ratio.is_finite() {
-            continue;
-        }
+    for (segment, ln_ratio) in ln_ratios(segments, evaluated) {
         let level_ft = PressureAltitude::meters(segment.means.pressure_altitude_m).to_feet();
         let keys =
             [(0, 0), (1, LEVEL_BANDS_FT.of(level_ft)), (2, MACH_BANDS.of(segment.means.mach))];
@@ -112,6 +107,32 @@ pub fn of_tail(
         }
     }
     groups.iter().map(|(key, group)| of_group(tail, *key, group)).collect()
+}
+
+/// That of all segments of a tail alone; `None` where none has a ratio. As [`of_tail`].
+#[must_use]
+pub fn of_all(
+    tail: &str,
+    segments: &[Segment],
+    evaluated: &[Option<Evaluated>],
+) -> Option<FuelFactor> {
+    let mut group = Group::new();
+    for (segment, ln_ratio) in ln_ratios(segments, evaluated) {
+        group.entry(Arc::clone(&segment.identity)).or_default().push(ln_ratio);
+    }
+    (!group.is_empty()).then(|| of_group(tail, (0, 0), &group))
+}
+
+/// Segments that the book predicts, with ln(recorded/book).
+fn ln_ratios<'s>(
+    segments: &'s [Segment],
+    evaluated: &'s [Option<Evaluated>],
+) -> impl Iterator<Item = (&'s Segment, f64)> {
+    segments.iter().zip(evaluated).filter_map(|(segment, evaluated)| {
+        let predicted_kg_s = evaluated.as_ref()?.predicted_fuel_flow_kg_s?;
+        let ln_ratio = (segment.means.fuel_flow_total_kg_s / predicted_kg_s).ln();
+        ln_ratio.is_finite().then_some((segment, ln_ratio))
+    })
 }
 
 /// Ln ratios by flight.

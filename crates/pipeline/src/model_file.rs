@@ -22,6 +22,7 @@ use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use adapt::paper::State as PaperState;
 use diagnose::{Baseline, GaugeBurn};
 use effects::ExtendedModel;
+use flight::FlightIdentity;
 use lut::Table;
 use perf_model::{Guide, GuidePoint, InitialModel};
 use serde::{Deserialize, Serialize};
@@ -309,6 +310,14 @@ impl ModelFile {
             Some(LawState::Paper { .. }) => true,
             None => false,
         }
+    }
+
+    /// Whether a flight taught it, in whatever tail's folder.
+    pub fn has_learnt(&self, flight: &FlightIdentity) -> bool {
+        let start = flight.start.to_string();
+        self.learnt.iter().flat_map(|learnt| &learnt.ledger).any(|entry| {
+            entry.start == start && entry.flight == flight.flight && entry.tail == flight.tail
+        })
     }
 
     /// The solution of law `bayes`, where that is the law.

@@ -78,6 +78,11 @@ pub fn fuel_factor_percent(error_percent: f64) -> f64 {
     100.0 * (1.0 / (1.0 - error_percent / 100.0) - 1.0)
 }
 
+/// The error in per cent of recorded fuel flow that a fuel factor stands for: [`fuel_factor_percent`] turned round.
+pub fn error_percent(fuel_factor_percent: f64) -> f64 {
+    100.0 * fuel_factor_percent / (100.0 + fuel_factor_percent)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -115,5 +120,6 @@ mod tests {
         // Recorded 109, predicted 100: 8.2569 % of the recorded flow, 9 % of the predicted one.
         assert!((fuel_factor_percent(100.0 * 9.0 / 109.0) - 9.0).abs() < 1e-12);
         assert_eq!(fuel_factor_percent(0.0), 0.0);
+        assert!((error_percent(9.0) - 100.0 * 9.0 / 109.0).abs() < 1e-12);
     }
 }

@@ -4,6 +4,7 @@ use core::fmt::{Display, Write as _};
 
 use serde::{Deserialize, Serialize};
 
+use crate::fuel_factor::FuelFactor;
 use crate::not_evaluated::{self, NotEvaluated};
 use crate::statistics::ErrorStatistics;
 
@@ -93,7 +94,7 @@ pub struct TailSummary {
     pub tail: String,
     /// All flights, earlier runs included.
     pub flights: usize,
-    /// Flights that this run added.
+    /// Flights that this run added; in `evaluate` those that did not teach the model.
     pub flights_new: usize,
     /// Samples of all flights.
     pub samples: u64,
@@ -120,6 +121,9 @@ pub struct TailSummary {
     /// The same of the mean error of the guide's own rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub book_half_width95_percent: Option<f64>,
+    /// The fuel factor over all flights, as `evaluate --fuel-factors` has it; absent where nothing is adapted, and of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fuel_factor_percent: Option<FactorSummary>,
     /// Share of errors within the stated 95 % interval of a segment; absent where the law states none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval95_coverage: Option<f64>,
@@ -133,7 +137,27 @@ pub struct TailSummary {
     pub beyond_flights: Option<usize>,
 }
 
+/// A fuel factor, in per cent of what the guide's own rows predict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FactorSummary {
+    /// Mean over flights.
+    pub value: f64,
+    /// Its 95 % interval; null with one flight.
+    pub ci95: Option<[f64; 2]>,
+}
+
+impl From<&FuelFactor> for FactorSummary {
+    fn from(factor: &FuelFactor) -> Self {
+        Self { value: factor.percent_of_predicted(), ci95: factor.interval95() }
+    }
+}
+
 impl TailSummary {
+    /// Whether some of its flights taught the model that is evaluated.
+    const fn is_of_a_fit(&self) -> bool {
+        self.fuel_flow_error_percent.after.is_none() && self.flights_new < self.flights
+    }
+
     /// Whether the mean error of its flights lies beyond what the model states of it.
     fn is_beyond_its_interval(&self) -> bool {
         let mean = self.fuel_flow_error_percent.before.mean;
@@ -210,6 +234,16 @@ impl Summary {
             text.push_str(
                 "Inside 95 %: share of the segments within the stated 95 % interval; mean within: half the 95 % interval \
                  of the mean error of such flights.\n",
+            );
+        }
+        for tail in self.tails.iter().filter(|tail| tail.is_of_a_fit()) {
+            let _ = writeln!(
+                text,
+                "{}: {} of {} taught this model: that it fits them is no forecast. The rows of `evaluate -o` are by the model before \
+                 it learnt each flight.",
+                tail.tail,
+                tail.flights - tail.flights_new,
+                counted(tail.flights, "flight")
             );
         }
         for tail in &self.tails {

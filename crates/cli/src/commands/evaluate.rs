@@ -88,7 +88,7 @@ pub(crate) fn evaluate(
         schema: SCHEMA,
         reports: ReportsSummary {
             read,
-            already_known: 0,
+            already_known: tails.iter().map(EvaluatedTail::learnt_before).sum(),
             copies: reading.copies,
             other_files: reading.other_files,
             refused: refused.iter().map(RefusedSummary::from).collect(),
@@ -124,6 +124,11 @@ impl EvaluatedTail {
             .collect();
         let result = TailResult::of_flights(tail, model, flights, predicts);
         Self { result, flights: given, predicts }
+    }
+
+    /// How many of the flights taught the model.
+    const fn learnt_before(&self) -> usize {
+        self.result.summary.flights - self.result.summary.flights_new
     }
 
     /// All segments, flight by flight.

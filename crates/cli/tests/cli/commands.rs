@@ -161,7 +161,7 @@ fn golden_check_finds_a_changed_value() {
     std::fs::write(&table, text.replace(&line, &changed)).unwrap();
     let ran = cruisefit(&["golden".as_ref(), "check".as_ref(), folder.as_os_str()]).expect(2);
     assert!(ran.stdout.contains("SIM-01_table.csv:41: value"), "{}", ran.stdout);
-    ran.says("1 values out of tolerance");
+    ran.says("1 value out of tolerance");
     // Blessing is deliberate, and makes the check pass again.
     cruisefit(&["golden".as_ref(), "bless".as_ref(), folder.as_os_str()]).expect(0);
     assert_eq!(std::fs::read_to_string(&table).unwrap(), text);

@@ -146,7 +146,7 @@ fn values_out_of_tolerance_are_in_the_document() {
     let line = before.lines().nth(40).unwrap();
     std::fs::write(&table, before.replace(line, &line.replacen("0.0", "0.1", 1))).unwrap();
     let ran = cruisefit(&["golden", "check", &golden, "--json"]).expect(2);
-    ran.says("1 values out of tolerance");
+    ran.says("1 value out of tolerance");
     let document: Value = serde_json::from_str(&ran.stdout).unwrap();
     let difference = &document["figures"]["differences"][0];
     assert_eq!(difference["file"], text(&table));

@@ -92,6 +92,17 @@ fn fuel_factors_are_against_the_book() {
     assert!(entered >= factor && entered - factor < 0.1);
     assert!(numbers(&factors, "error_percent_of_recorded")[0] < factor);
     assert!(numbers(&factors, "specific_range_deviation_percent")[0] < 0.0);
+    // The summary of `adapt`, and with it the page, has the same.
+    let summary = std::fs::read_to_string(output.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let stated = &summary["tails"][0]["fuel_factor_percent"];
+    let stated = [&stated["value"], &stated["ci95"][0], &stated["ci95"][1]];
+    let names =
+        ["fuel_factor_percent_of_predicted", "fuel_factor_ci95_low", "fuel_factor_ci95_high"];
+    for (stated, name) in stated.into_iter().zip(names) {
+        let written = numbers(&factors, name)[0];
+        assert!((stated.as_f64().unwrap() - written).abs() < 1e-9, "{name}: {stated} {written}");
+    }
 }
 
 fn assert_coverage_is_the_share_inside(
