@@ -105,7 +105,8 @@ impl History {
     }
 
     /// The same where a part of what the series sums up is known to have stepped at these instants: levels and trend step there too,
-    /// by whatever the flights say.
+    /// by whatever the flights say. A change that the flights show in addition to these steps is one of its own; one that may be
+    /// these, which lie within the interval of its date, is theirs: it begins at the nearest, and its size is that of all of them.
     #[must_use]
     pub fn fit_with_steps(
         series: &Series,
@@ -143,7 +144,7 @@ impl History {
             changes = found(&shown, &weights, &candidates, beliefs);
             let asked = Asked::new(&shown, &weights, &[], *beliefs);
             stepped = stepped_events(&asked, &changes, (&candidates, &known))?;
-            levels = levels_between(&mut changes, &stepped.kept, series, &weights, beliefs)?;
+            levels = levels_between(&mut changes, &stepped, series, &weights, beliefs)?;
             let next: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
             let is_settled = next == boundaries;
             boundaries = next;
@@ -229,25 +230,23 @@ fn stepped_events(
 ) -> Option<SteppedEvents> {
     let Asked { series, weights, ref beliefs, middle_percent, .. } = *asked;
     let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
-    let is_free = |flight: &usize| {
+    // What is known to be a step is one in every set, whatever else is found about its date.
+    let is_asked = |flight: &usize| {
         let near = |change: &Change| (change.earliest..=change.latest).contains(flight);
-        (1..series.len()).contains(flight) && !changes.iter().any(near)
+        (1..series.len()).contains(flight) && !changes.iter().any(near) && !known.contains(flight)
     };
-    // What is known to be a step is one in every set.
-    let known: Vec<usize> = known.iter().copied().filter(is_free).collect();
-    let is_asked = |flight: &usize| is_free(flight) && !known.contains(flight);
     let mut kept =
         merged(&[], &candidates.iter().map(|c| c.flight).filter(is_asked).collect::<Vec<_>>());
     let at_event = beliefs.change_at_event;
     let ln_believed = at_event.ln() - (-at_event).ln_1p();
     let ln_evidence = |kept: &[usize]| {
-        let boundaries = merged(&found, &merged(&known, kept));
+        let boundaries = merged(&found, &merged(known, kept));
         let levels = Levels::fit(series, weights, &boundaries, beliefs)?;
         Some(levels.ln_evidence(middle_percent, beliefs))
     };
     let ln_posterior = |kept: &[usize]| Some(ln_evidence(kept)? + kept.len() as f64 * ln_believed);
     let mut with_all = ln_posterior(&kept)?;
-    let mut weighed = vec![(merged(&known, &kept), with_all)];
+    let mut weighed = vec![(merged(known, &kept), with_all)];
     loop {
         let mut best: Option<(usize, f64)> = None;
         for place in 0..kept.len() {
@@ -257,10 +256,11 @@ fn stepped_events(
             if best.is_none_or(|(_, most)| ln > most) {
                 best = Some((place, ln));
             }
-            weighed.push((merged(&known, &others), ln));
+            weighed.push((merged(known, &others), ln));
         }
         let Some((place, ln)) = best.filter(|(_, ln)| *ln > with_all) else {
-            return Some(SteppedEvents { kept: merged(&known, &kept), weighed });
+            let kept = merged(known, &kept);
+            return Some(SteppedEvents { kept, known: known.to_vec(), weighed });
         };
         kept.remove(place);
         with_all = ln;
@@ -271,11 +271,21 @@ fn stepped_events(
 struct SteppedEvents {
     /// First flights after those that more probably are than not, and after what is known to be one.
     kept: Vec<usize>,
+    /// Those among them that are known to be steps.
+    known: Vec<usize>,
     /// Every set of them that was asked for, with ln of its probability but for a common term.
     weighed: Vec<(Vec<usize>, f64)>,
 }
 
 impl SteppedEvents {
+    /// Of the steps known within the interval of a change's date: the nearest one, and the first and the last of all.
+    fn nearest_known(&self, change: &Change) -> Option<(usize, (usize, usize))> {
+        let is_within = |flight: &&usize| (change.earliest..=change.latest).contains(*flight);
+        let within = || self.known.iter().filter(is_within).copied();
+        let nearest = within().min_by_key(|flight| flight.abs_diff(change.first_flight))?;
+        Some((nearest, (within().min()?, within().max()?)))
+    }
+
     /// The trend over all sets of events that may be steps: what it would be with an event left out counts as much as leaving it out
     /// is probable.
     ///
@@ -304,20 +314,27 @@ impl SteppedEvents {
     }
 }
 
-/// Levels between changes and events that are steps, without the changes, one after the other, whose step may be none: its 95 %
-/// interval holds zero.
+/// Levels between changes and what is a step, without the changes, one after the other, whose step may be none: its 95 % interval
+/// holds zero.
+///
+/// One that may be none in addition to steps known within the interval of its date may be these steps instead: it is asked for once
+/// more as what they come to together, beginning at the nearest, and so a change of every engine of which each has another date stays
+/// one.
 fn levels_between(
     changes: &mut Vec<Change>,
-    stepped: &[usize],
+    stepped: &SteppedEvents,
     series: &Series,
     weights: &[f64],
     beliefs: &ChangeBeliefs,
 ) -> Option<Levels> {
+    // Of each change: the first and the last of the steps that it is taken for.
+    let mut taken_for: Vec<Option<(usize, usize)>> = vec![None; changes.len()];
     loop {
         let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
-        let levels = Levels::fit(series, weights, &merged(&found, stepped), beliefs)?;
-        for change in changes.iter_mut() {
-            if let Some(step) = levels.step_at(change.first_flight) {
+        let levels = Levels::fit(series, weights, &merged(&found, &stepped.kept), beliefs)?;
+        for (change, steps) in changes.iter_mut().zip(&taken_for) {
+            let (first, last) = steps.unwrap_or((change.first_flight, change.first_flight));
+            if let Some(step) = levels.step_over(first, last) {
                 change.step_percent = step;
             }
         }
@@ -329,7 +346,14 @@ fn levels_between(
             .min_by(|(_, one), (_, other)| one.total_cmp(other))
             .filter(|(_, deviations)| *deviations <= NORMAL_95);
         let Some((place, _)) = least else { return Some(levels) };
-        changes.remove(place);
+        let nearest = stepped.nearest_known(&changes[place]);
+        if let (Some((nearest, steps)), None) = (nearest, taken_for[place]) {
+            changes[place].first_flight = nearest;
+            taken_for[place] = Some(steps);
+        } else {
+            changes.remove(place);
+            taken_for.remove(place);
+        }
     }
 }
 

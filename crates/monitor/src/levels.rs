@@ -183,7 +183,12 @@ impl Levels {
     /// The step at a boundary, by its place among the boundaries, %.
     #[must_use]
     pub fn step_percent(&self, place: usize) -> Option<Estimate> {
-        let (before, after) = (self.pieces.get(place)?, self.pieces.get(place + 1)?);
+        self.step_between(place, place + 1)
+    }
+
+    /// What the level of one piece is above that of another before it, by their places, %.
+    fn step_between(&self, before: usize, after: usize) -> Option<Estimate> {
+        let (before, after) = (self.pieces.get(before)?, self.pieces.get(after)?);
         let apart = after.mean_x - before.mean_x;
         let variance = 1.0 / before.weight + 1.0 / after.weight + self.variance_along(&apart);
         Some(Estimate {
@@ -194,8 +199,13 @@ impl Levels {
 
     /// The step before a flight, %; `None` where no piece begins with it.
     pub(crate) fn step_at(&self, first_flight: usize) -> Option<Estimate> {
-        let place = self.boundaries.binary_search(&first_flight).ok()?;
-        self.step_percent(place)
+        self.step_over(first_flight, first_flight)
+    }
+
+    /// The step over the boundaries from one to another, both among them, %; `None` where one of them is no boundary.
+    pub(crate) fn step_over(&self, first: usize, last: usize) -> Option<Estimate> {
+        let place = |flight| self.boundaries.binary_search(&flight).ok();
+        self.step_between(place(first)?, place(last)? + 1)
     }
 
     /// The level of the piece that a flight belongs to, at a date and mean conditions, %.
@@ -316,6 +326,7 @@ mod tests {
         check(levels.trend_percent_per_year(), [1.0, 0.0, 0.0, 0.0]);
         check(levels.step_percent(0).unwrap(), [0.0, -1.0, 1.0, 0.0]);
         check(levels.step_percent(1).unwrap(), [0.0, 0.0, -1.0, 1.0]);
+        check(levels.step_over(4, 9).unwrap(), [0.0, -1.0, 0.0, 1.0]);
         check(levels.level_percent(5, 0.3), [0.3, 0.0, 1.0, 0.0]);
         check(levels.last_level_percent(series), [365.0 / 365.25, 0.0, 0.0, 1.0]);
         assert!(levels.step_percent(2).is_none());

@@ -2,7 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
 
 use flight::Timestamp;
-use monitor::{CONDITIONS, ChangeBeliefs, FlightDeviation, History, Noise, Series, SeriesError};
+use monitor::{
+    CONDITIONS, Change, ChangeBeliefs, FlightDeviation, History, Levels, Noise, Series, SeriesError,
+};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -186,6 +188,82 @@ fn an_event_takes_the_change_that_it_explains() {
     let no_effect = found.events[0].effect_percent.unwrap();
     assert!(no_effect.value.abs() < 3.0 * no_effect.deviation, "{no_effect:?}");
     assert!(found.events[3].effect_percent.is_none() && found.events[4].effect_percent.is_none());
+}
+
+/// A step of 1 % at flight 60 that noise of 1.2 % blurs, so that the interval of its date holds most flights. A step of an engine that
+/// is known in it is a boundary all the same. Oracle: the fit that is given these boundaries.
+#[test]
+fn what_is_known_to_have_stepped_steps_beside_what_is_found() {
+    let beliefs = ChangeBeliefs::of_2026();
+    let noise = normal(40).take(120).enumerate();
+    let series = daily(noise.map(|(at, z)| 1.2 * z + f64::from(u8::from(at >= 60))));
+    let alone = history(&series, &[]);
+    assert_eq!(alone.changes.len(), 1);
+    let Change { first_flight, earliest, latest, .. } = alone.changes[0];
+    assert_eq!((first_flight, earliest, latest), (60, 8, 101));
+    let with = |steps: &[i64]| {
+        let steps: Vec<Timestamp> = steps.iter().copied().map(day).collect();
+        History::fit_with_steps(&series, &[], &steps, &beliefs).unwrap()
+    };
+    let measured = |found: &History, boundaries: &[usize], place: usize| {
+        let oracle = Levels::fit(&series, &found.weights, boundaries, &beliefs).unwrap();
+        assert_eq!(found.levels.boundaries(), boundaries);
+        assert_eq!(found.changes.len(), 1, "{boundaries:?}: {:?}", found.changes);
+        assert_eq!(found.changes[0].first_flight, boundaries[place]);
+        let (step, expected) = (found.changes[0].step_percent, oracle.step_percent(place).unwrap());
+        assert!((step.value - expected.value).abs() < 1e-12, "{step:?} {expected:?}");
+        assert!((step.deviation - expected.deviation).abs() < 1e-12, "{step:?} {expected:?}");
+    };
+    for known in [25, 30, 40] {
+        measured(&with(&[known]), &[usize::try_from(known).unwrap(), 60], 1);
+    }
+    for known in [80, 95] {
+        measured(&with(&[known]), &[60, usize::try_from(known).unwrap()], 0);
+    }
+    // Two flights before the step there is none to be seen in addition, and at the same flight it is the same.
+    measured(&with(&[58]), &[58], 0);
+    measured(&with(&[60]), &[60], 0);
+    // One for each engine of an aircraft that changed as a whole: it is one change, and its size is that of both together.
+    let of_both = with(&[57, 62]);
+    assert_eq!(of_both.levels.boundaries(), [57, 62]);
+    assert_eq!(of_both.changes.len(), 1);
+    assert!([57, 62].contains(&of_both.changes[0].first_flight));
+    let size = of_both.changes[0].step_percent;
+    let outer = |from: usize, to: usize| of_both.mean_percent(&series, from..to).unwrap().value;
+    assert!((size.value - (outer(62, 120) - outer(0, 57))).abs() < 0.2, "{size:?}");
+    assert!(size.differs_from_zero() && size.deviation < 0.4, "{size:?}");
+}
+
+/// What is known to have stepped, and did not, makes no change: of 300 series of noise alone as many are found with two such dates as
+/// without, but for one. Of 300 with a step of 0.8 % and two dates about it, an engine's each, as many as without; the interval of its
+/// size holds it in 95 % of them, three standard errors allowed.
+#[test]
+fn what_is_known_makes_and_hides_no_change() {
+    let mut noise = normal(41);
+    let beliefs = ChangeBeliefs::of_2026();
+    let mut changes = |step: f64, dates: &dyn Fn(i64) -> [Timestamp; 2]| {
+        let (mut without, mut with, mut held) = (0_i32, 0_i32, 0_i32);
+        for case in 0..300 {
+            let y = noise.by_ref().take(120).enumerate();
+            let y = y.map(|(at, z)| f64::from(u8::from(at >= 60)) * step + 0.5 * z);
+            let series = daily(y.collect::<Vec<_>>());
+            without += i32::try_from(history(&series, &[]).changes.len()).unwrap();
+            let found = History::fit_with_steps(&series, &[], &dates(case), &beliefs).unwrap();
+            for change in &found.changes {
+                with += 1;
+                let size = change.step_percent;
+                held += i32::from((size.value - step).abs() < size.half_width95());
+            }
+        }
+        (without, with, held)
+    };
+    let (without, with, _) =
+        changes(0.0, &|case| [10 + case * 37 % 100, 10 + case * 61 % 100].map(day));
+    assert!(with <= without + 1, "{with}, {without} without");
+    let (without, with, held) =
+        changes(0.8, &|case| [57 + case * 37 % 7, 58 + case * 61 % 5].map(day));
+    assert!((without - 3..=without + 3).contains(&with), "{with}, {without} without");
+    assert!(f64::from(held) > 0.912 * f64::from(with), "{held} of {with}");
 }
 
 /// 60 flights a year for two years, 2 % of wear a year, and three washes of 0.9 %, of which none is a change by itself: with their
