@@ -6,7 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::levels::Estimate;
-use crate::series::{CONDITIONS, LEAST_VARIATION};
+use crate::series::{CONDITIONS, one_over};
 use crate::settings::MODEL_BY_CONDITION_PERCENT;
 
 /// The conditions, the squares of the first two (Mach number and lift coefficient, by which drag is not straight), their product.
@@ -17,7 +17,7 @@ type Information = SMatrix<f64, FEATURES, FEATURES>;
 /// One flight of a tail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlownFlight {
-    /// Conditions flown, in the same units for all tails; the first two are those by which the model's error may be curved.
+    /// Conditions flown, as [`CONDITIONS`] has them; the first two are those by which the model's error may be curved.
     pub conditions: [f64; CONDITIONS],
     /// Deviation by the model of the type at these conditions, less what of it is of its date, %.
     pub deviation_percent: f64,
@@ -45,7 +45,7 @@ pub struct FlownConditions {
 /// the tail's flights about their means, Λ one over the square of [`MODEL_BY_CONDITION_PERCENT`], φ the mean square of what is left
 /// over, in variances of flights, where it is above 1. The errors of tails of like conditions are common to them.
 ///
-/// `None` for fewer than two tails, or conditions that are not finite.
+/// `None` for all of them where there are fewer than two tails, one has no conditions of its level, or conditions are not finite.
 #[must_use]
 pub fn to_common_conditions(tails: &[FlownConditions]) -> Option<Vec<Estimate>> {
     if tails.len() < 2 || tails.iter().any(|tail| tail.of_level.is_empty()) {
@@ -64,10 +64,10 @@ pub fn to_common_conditions(tails: &[FlownConditions]) -> Option<Vec<Estimate>> 
     found.iter().all(|one| one.value.is_finite() && one.deviation.is_finite()).then_some(found)
 }
 
-/// Mean and standard deviation of each condition over tails, each tail counted alike.
+/// Mean of each condition over tails, each tail counted alike, and one over its standard deviation; 0 of one that does not vary.
 struct Scale {
     mean: [f64; CONDITIONS],
-    deviation: [f64; CONDITIONS],
+    per_condition: [f64; CONDITIONS],
 }
 
 impl Scale {
@@ -77,15 +77,14 @@ impl Scale {
             tails.iter().map(of_tail).sum::<f64>() / tails.len() as f64
         };
         let mean: [f64; CONDITIONS] = core::array::from_fn(|k| over_tails(&|x| x[k]));
-        let deviation = core::array::from_fn(|k| over_tails(&|x| (x[k] - mean[k]).powi(2)).sqrt());
-        Self { mean, deviation }
+        let per_condition =
+            core::array::from_fn(|k| one_over(over_tails(&|x| (x[k] - mean[k]).powi(2)).sqrt(), k));
+        Self { mean, per_condition }
     }
 
     fn features(&self, conditions: &[f64; CONDITIONS]) -> Features {
-        let z: [f64; CONDITIONS] = core::array::from_fn(|k| {
-            let varies = self.deviation[k] > LEAST_VARIATION * self.mean[k].abs();
-            if varies { (conditions[k] - self.mean[k]) / self.deviation[k] } else { 0.0 }
-        });
+        let z: [f64; CONDITIONS] =
+            core::array::from_fn(|k| (conditions[k] - self.mean[k]) * self.per_condition[k]);
         let curved = [z[0] * z[0], z[1] * z[1], z[0] * z[1]];
         Features::from_fn(|k, _| if k < CONDITIONS { z[k] } else { curved[k - CONDITIONS] })
     }
@@ -231,6 +230,31 @@ mod tests {
             assert!((one.value - other.value).abs() < 1e-9);
         }
         assert!(to_common_conditions(&worse[..1]).is_none());
+    }
+
+    /// By construction: tails fly on standard days but for rounding, with which their deviations go. There is no condition by which they
+    /// differ, and nothing to raise.
+    #[test]
+    fn rounding_is_no_condition() {
+        let mut tails = flown(&[0.77, 0.77], 40, |_| 0.0);
+        for (place, tail) in tails.iter_mut().enumerate() {
+            let fixed = |k: usize| {
+                let isa_deviation_k =
+                    if (k + place).is_multiple_of(3) { 2.8e-14 } else { -2.8e-14 };
+                [0.77, 5.0, 10_000.0, isa_deviation_k, 6e4]
+            };
+            for (k, flight) in tail.flights.iter_mut().enumerate() {
+                flight.conditions = fixed(k);
+                flight.deviation_percent = flight.conditions[3].signum();
+            }
+            tail.of_level = (0..10 + 10 * place).map(|k| (fixed(k), 1.0)).collect();
+        }
+        for raised in to_common_conditions(&tails).unwrap() {
+            assert_eq!((raised.value, raised.deviation), (0.0, 0.0));
+        }
+        // And none of them knows anything where one has no conditions of its level.
+        tails[1].of_level.clear();
+        assert!(to_common_conditions(&tails).is_none());
     }
 
     /// Tails that fly at one Mach number each do not show how the model's error depends on it: the interval is that of before.

@@ -284,7 +284,7 @@ mod tests {
         // The third does not vary.
         let conditions: [[f64; CONDITIONS]; 12] = core::array::from_fn(|k| {
             let number = |seed: usize| ((k * 7 + seed * 5) % 11) as f64;
-            [200.0 + number(1), 0.01 * number(2), 5.0, 1e4 * number(3), number(4)]
+            [0.7 + 0.01 * number(1), 4.0 + 0.1 * number(2), 1e4, 3.0 * number(3), 1e3 * number(4)]
         });
         let with = without.clone().under(&conditions).unwrap();
         for series in [without, with] {

@@ -8,9 +8,6 @@ use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 /// A Julian year, by which trends are per year.
 const SECONDS_A_YEAR: f64 = DAYS_PER_YEAR * SECONDS_PER_DAY;
 
-/// Standard deviation over the mean below which a condition does not vary. Our choice: rounding.
-pub(crate) const LEAST_VARIATION: f64 = 1e-9;
-
 /// What one flight shows: the mean of its segments' deviations, and how much they scatter.
 ///
 /// A deviation is 100·ln(recorded/predicted) fuel flow, %: positive, the aircraft burns more than predicted.
@@ -22,8 +19,23 @@ pub struct FlightDeviation {
     scatter_percent2: f64,
 }
 
-/// How many conditions a flight is flown at that its deviation may depend on.
+/// How many conditions a flight is flown at that its deviation may depend on: Mach number, lift coefficient (but for a constant
+/// factor), pressure altitude (m), ISA deviation (K) and mass (kg).
 pub const CONDITIONS: usize = 5;
+
+/// What each condition is the sum, difference or ratio of: Mach number 1, a mass over pressure and squared Mach number of some kg/Pa,
+/// altitudes of 10 km, temperatures of 250 K (of which the ISA deviation is the difference of two), masses of tens of tonnes. Its own
+/// mean would not do: that of an ISA deviation may be 0.
+const MAGNITUDES: [f64; CONDITIONS] = [1.0, 5.0, 1e4, 250.0, 5e4];
+
+/// Standard deviation, as a share of a condition's magnitude, below which it does not vary. Our choice: 0.0001 Mach, 1 m, 0.03 K, 5 kg are
+/// rounding, of print-outs and of single precision too, and change fuel flow by some hundredths of a per cent at most.
+const LEAST_VARIATION: f64 = 1e-4;
+
+/// One over the standard deviation of a condition, by its place; 0 for one that does not vary.
+pub(crate) fn one_over(deviation: f64, condition: usize) -> f64 {
+    if deviation > LEAST_VARIATION * MAGNITUDES[condition] { 1.0 / deviation } else { 0.0 }
+}
 
 /// Why flights are not a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -137,8 +149,9 @@ impl Series {
         }
     }
 
-    /// The same where the conditions of every flight are known, in any units. The model that its deviations are against has learnt
-    /// how fuel flow depends on them, and may have taken for that what is a change over time.
+    /// The same where the conditions of every flight are known, as [`CONDITIONS`] has them. The model that its deviations are against
+    /// has learnt how fuel flow depends on them, and may have taken for that what is a change over time. One that varies by no more
+    /// than rounding changes nothing.
     ///
     /// # Errors
     /// [`SeriesError`] where there are not as many as flights, or one is not finite.
@@ -210,8 +223,7 @@ fn standardised(conditions: &[[f64; CONDITIONS]]) -> Vec<[f64; CONDITIONS]> {
     for k in 0..CONDITIONS {
         let mean = conditions.iter().map(|of| of[k]).sum::<f64>() / count;
         let square = conditions.iter().map(|of| (of[k] - mean).powi(2)).sum::<f64>() / count;
-        let varies = square > (LEAST_VARIATION * mean).powi(2);
-        let scale = if varies { square.powf(-0.5) } else { 0.0 };
+        let scale = one_over(square.sqrt(), k);
         for of in &mut standard {
             of[k] = scale * (of[k] - mean);
         }

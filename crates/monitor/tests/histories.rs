@@ -365,22 +365,51 @@ fn year(
     let mut next = || noise.next().unwrap();
     let conditions = (0..365).map(|day| {
         let season = (f64::from(day) * core::f64::consts::TAU / 365.0).cos();
-        [next(), next(), next(), 2.0 - 6.0 * season + 4.0 * next(), next()]
+        let [mach, lift] = [0.78 + 0.01 * next(), 5.0 + 0.3 * next()];
+        let altitude = 10_500.0 + 500.0 * next();
+        let isa_deviation_k = 2.0 - 6.0 * season + 4.0 * next();
+        [mach, lift, altitude, isa_deviation_k, 6e4 + 3e3 * next()]
     });
     let conditions: Vec<_> = conditions.collect();
     let y = (0..365).map(|day| f64::from(u8::from(day >= 90)) * step_percent + 0.5 * next());
     (conditions, y.collect())
 }
 
-/// What is left of values where the best line through conditions is taken out.
+/// What is left of values where the best line through conditions is taken out, each condition in units of its size for the sake of the
+/// solution.
 fn without_conditions(conditions: &[[f64; CONDITIONS]], y: &[f64]) -> Vec<f64> {
+    let sizes = conditions[0];
     let design = DMatrix::from_fn(y.len(), 1 + CONDITIONS, |row, column| {
-        if column == 0 { 1.0 } else { conditions[row][column - 1] }
+        if column == 0 { 1.0 } else { conditions[row][column - 1] / sizes[column - 1] }
     });
     let y = DVector::from_row_slice(y);
     let normal = (design.transpose() * &design).cholesky().unwrap();
     let fitted = &design * normal.solve(&(design.transpose() * &y));
     (y - fitted).as_slice().to_vec()
+}
+
+/// By construction: a step of 0.6 % at an event, on standard days but for rounding, which has a sign of its own before the step and after
+/// it. No condition varies, so that the history is that without conditions; of 0.1 K it would be another one.
+#[test]
+fn rounding_is_no_condition() {
+    let y: Vec<f64> =
+        normal(31).zip(0..120).map(|(z, k)| f64::from(u8::from(k >= 60)) * 0.6 + 0.3 * z).collect();
+    let under = |isa_deviation_k: f64| {
+        let of = |k| {
+            let of_season = if k < 60 { -isa_deviation_k } else { isa_deviation_k };
+            [0.78, 5.0, 10_000.0, of_season, 60_000.0]
+        };
+        let conditions: Vec<_> = (0..120).map(of).collect();
+        history(&daily(y.clone()).under(&conditions).unwrap(), &[day(60)])
+    };
+    let without = history(&daily(y.clone()), &[day(60)]);
+    for rounding in [2.8e-14, 1e-5, 0.005] {
+        let found = under(rounding);
+        let by_condition = found.levels.by_condition_percent();
+        assert!(by_condition.iter().all(|by| by.abs() < 1e-12), "{rounding} K: {by_condition:?}");
+        assert_eq!(found.events, without.events, "{rounding} K");
+    }
+    assert!(under(0.1).events[0].effect_percent.unwrap().deviation > 0.9);
 }
 
 #[test]
