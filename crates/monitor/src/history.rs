@@ -202,7 +202,6 @@ fn found(
     for change in &mut changes {
         belong(change, candidates);
     }
-    changes.dedup_by_key(|change| change.first_flight);
     changes
 }
 
@@ -462,7 +461,8 @@ struct Candidate {
     is_likely: bool,
 }
 
-/// A change within whose interval an event lies is that event's: the nearest one, but rather a likely one.
+/// A change within whose interval an event lies is that event's: the nearest one, but rather a likely one; the earlier of two that are
+/// as near.
 fn belong(change: &mut Change, candidates: &[Candidate]) {
     let mut near: Vec<&Candidate> = candidates
         .iter()
@@ -470,7 +470,7 @@ fn belong(change: &mut Change, candidates: &[Candidate]) {
         .collect();
     near.sort_by_key(|candidate| {
         let distance = candidate.flight.abs_diff(change.first_flight);
-        (!candidate.is_likely, distance, candidate.event)
+        (!candidate.is_likely, distance, candidate.flight, candidate.event)
     });
     if let Some((first, others)) = near.split_first() {
         change.event = Some(first.event);

@@ -3,7 +3,8 @@
 
 use flight::Timestamp;
 use monitor::{
-    CONDITIONS, Change, ChangeBeliefs, FlightDeviation, History, Levels, Noise, Series, SeriesError,
+    CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation, History, Levels, Noise, Series,
+    SeriesError,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -266,6 +267,19 @@ fn what_is_known_makes_and_hides_no_change() {
     assert!(f64::from(held) > 0.912 * f64::from(with), "{held} of {with}");
 }
 
+/// By construction: two events as far from the most probable flight as each other, before it and behind; in either order of the list the
+/// earlier one takes the change.
+#[test]
+fn of_two_events_as_near_the_earlier_takes_the_change() {
+    let noise = normal(40).take(120).enumerate();
+    let series = daily(noise.map(|(at, z)| 1.2 * z + f64::from(u8::from(at >= 60))));
+    for (events, earlier) in [([57, 63], 0), ([63, 57], 1)] {
+        let found = history(&series, &events.map(day)).changes;
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].first_flight, found[0].event), (57, Some(earlier)), "{events:?}");
+    }
+}
+
 /// 60 flights a year for two years, 2 % of wear a year, and three washes of 0.9 %, of which none is a change by itself: with their
 /// dates the trend is that between them, but for the washes that the flights show least, which are left out; without them it is what
 /// wear and washes come to together. Planted; 40 series.
@@ -309,18 +323,64 @@ proptest! {
     fn a_shift_shifts_the_level_alone(
         shift in -20.0_f64..20.0,
         deviations in prop::collection::vec(-3.0_f64..3.0, 1..60),
+        days in prop::collection::vec(-2_i64..62, 0..6),
     ) {
         let one = daily(deviations.clone());
         let other = daily(deviations.iter().map(|deviation| deviation + shift));
-        let (a, b) = (history(&one, &[]), history(&other, &[]));
-        prop_assert_eq!(a.levels.boundaries(), b.levels.boundaries());
+        let events: Vec<Timestamp> = days.iter().copied().map(day).collect();
+        let (a, b) = (history(&one, &events), history(&other, &events));
         let difference = b.levels.last_level_percent(&other).value - a.levels.last_level_percent(&one).value;
         prop_assert!((difference - shift).abs() < 1e-6);
+        are_alike(&a, &b, |event| event)?;
+        let reversed: Vec<Timestamp> = events.iter().rev().copied().collect();
+        let c = history(&one, &reversed);
+        let (same, again) = (a.levels.last_level_percent(&one), c.levels.last_level_percent(&one));
+        prop_assert!((same.value - again.value).abs() < 1e-9);
+        are_alike(&a, &c, |event| events.len() - 1 - event)?;
         for change in &a.changes {
+            // An event's flight lies within the interval too.
             prop_assert!(change.earliest <= change.first_flight && change.first_flight <= change.latest);
-            prop_assert!(change.probability > 0.5 && change.probability <= 1.0);
+            prop_assert!(change.probability >= 0.5 && change.probability <= 1.0);
         }
     }
+}
+
+/// Whether two histories have the same changes, steps and effects of events but for rounding, where an event of the first has this place
+/// in the second. Of events before the same flight each is as good a name for a change as the others.
+fn are_alike(
+    one: &History,
+    other: &History,
+    place: impl Fn(usize) -> usize,
+) -> Result<(), TestCaseError> {
+    let close = |a: Estimate, b: Estimate| {
+        (a.value - b.value).abs() < 1e-6 && (a.deviation - b.deviation).abs() < 1e-6
+    };
+    prop_assert_eq!(one.levels.boundaries(), other.levels.boundaries());
+    let trends = (one.levels.trend_percent_per_year(), other.levels.trend_percent_per_year());
+    prop_assert!(close(trends.0, trends.1), "{:?}", trends);
+    prop_assert_eq!(one.changes.len(), other.changes.len());
+    for (a, b) in one.changes.iter().zip(&other.changes) {
+        let dates = |change: &Change| (change.first_flight, change.earliest, change.latest);
+        prop_assert_eq!(dates(a), dates(b));
+        prop_assert!((a.probability - b.probability).abs() < 1e-6, "{:?} {:?}", a, b);
+        prop_assert!(close(a.step_percent, b.step_percent), "{:?} {:?}", a, b);
+        let all = |change: &Change| change.event.into_iter().chain(change.other_events.clone());
+        let mut named: [Vec<usize>; 2] = [all(a).map(&place).collect(), all(b).collect()];
+        named[0].sort_unstable();
+        named[1].sort_unstable();
+        prop_assert_eq!(&named[0], &named[1]);
+    }
+    for (event, a) in one.events.iter().enumerate() {
+        let b = &other.events[place(event)];
+        prop_assert_eq!(a.first_flight, b.first_flight);
+        prop_assert_eq!(a.together_with.len(), b.together_with.len());
+        let are_close = match (a.effect_percent, b.effect_percent) {
+            (Some(a), Some(b)) => close(a, b),
+            (a, b) => a == b,
+        };
+        prop_assert!(are_close, "{:?} {:?}", a, b);
+    }
+    Ok(())
 }
 
 /// A year of flights, 12 K between summer and winter, and a step of −1.5 % in spring. The model that the deviations are against has
