@@ -159,8 +159,7 @@ fn months_alone_make_no_change_probable() {
 }
 
 /// Where an event is recorded before every flight, nothing is surer beforehand than that something changed: to the last bit of
-/// a number it is certain. A step is found all the same. Oracle: the odds of one event, which no number of further ones changes
-/// by more than what they believe beforehand.
+/// a number it is certain. A step is found all the same.
 #[test]
 fn many_events_hide_no_change() {
     let mut noise = normal(12);
@@ -173,6 +172,31 @@ fn many_events_hide_no_change() {
         let step = found.changes.iter().find(|change| change.first_flight == 80);
         let step = step.unwrap_or_else(|| panic!("{} events: {:?}", events.len(), found.changes));
         assert!(step.probability > 0.99, "{} events: {step:?}", events.len());
+    }
+}
+
+/// Further events at which nothing changed. Oracle: the odds with the one event alone, by Bayes' rule: that nothing changed at m others is
+/// believed with 2^−m beforehand, a factor by which the odds fall at most (and by another 2, since something at all is believed with even
+/// odds at least); what did not change is no reason for larger ones.
+#[test]
+fn further_events_cost_what_they_believe() {
+    let mut noise = normal(13);
+    let series =
+        daily((0..160).map(|at| f64::from(u8::from(at >= 80)) * 0.6 + 0.5 * noise.next().unwrap()));
+    let ln_odds = |further: i64| {
+        let events: Vec<Timestamp> =
+            (0..further).map(|k| day(100 + 2 * k)).chain([day(80)]).collect();
+        let changes = history(&series, &events).changes;
+        assert_eq!(changes.len(), 1, "{further}: {changes:?}");
+        assert_eq!(changes[0].first_flight, 80);
+        let odds = changes[0].probability / (1.0 - changes[0].probability);
+        odds.ln()
+    };
+    let alone = ln_odds(0);
+    for further in [1, 5, 10, 20, 30] {
+        let found = ln_odds(further);
+        let least = alone - (further + 1) as f64 * core::f64::consts::LN_2;
+        assert!((least..=alone).contains(&found), "{further}: {found}, alone {alone}");
     }
 }
 
