@@ -272,7 +272,7 @@ struct SteppedEvents {
     kept: Vec<usize>,
     /// Those among them that are known to be steps.
     known: Vec<usize>,
-    /// Every set of them that was asked for, with ln of its probability but for a common term.
+    /// The sets that were weighed on the way to it, not all that there are, each with ln of its probability but for a common term.
     weighed: Vec<(Vec<usize>, f64)>,
 }
 
@@ -285,8 +285,8 @@ impl SteppedEvents {
         Some((nearest, (within().min()?, within().max()?)))
     }
 
-    /// The trend over all sets of events that may be steps: what it would be with an event left out counts as much as leaving it out
-    /// is probable.
+    /// The trend over the sets of events that were weighed (all that may be steps, and each with one left out on the way to those that
+    /// are): what it would be with an event left out counts as much as leaving it out is probable.
     ///
     /// ```text
     /// t = Σ p_S·t_S,  variance Σ p_S·(v_S + (t_S − t)²)                                          [monitoring.24]
