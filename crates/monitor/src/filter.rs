@@ -10,20 +10,20 @@ use crate::settings::{ChangeBeliefs, FORGOTTEN_SHARE, MOST_STARTS};
 
 /// A flight as the filter needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilteredFlight {
+pub(crate) struct FilteredFlight {
     /// Years since an instant that is the same for all flights.
-    pub years: f64,
+    pub(crate) years: f64,
     /// Deviation less the middle of the series, %.
-    pub deviation_percent: f64,
+    pub(crate) deviation_percent: f64,
     /// One over its variance, %⁻².
-    pub weight: f64,
+    pub(crate) weight: f64,
     /// Whether an event was recorded between the flight before and this one.
-    pub event_before: EventBefore,
+    pub(crate) event_before: EventBefore,
 }
 
 /// Whether an event was recorded just before a flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum EventBefore {
+pub(crate) enum EventBefore {
     /// None.
     #[default]
     None,
@@ -47,7 +47,7 @@ struct Start {
 
 /// What is known after each flight about the start of the piece that it belongs to.
 #[derive(Clone, Debug)]
-pub struct ChangeFilter {
+pub(crate) struct ChangeFilter {
     beliefs: ChangeBeliefs,
     sums: RunningSums,
     /// By number of flights: ln density of the flights before, over all divisions.
@@ -67,7 +67,7 @@ pub struct ChangeFilter {
 impl ChangeFilter {
     /// A filter that has seen no flight.
     #[must_use]
-    pub fn new(beliefs: ChangeBeliefs) -> Self {
+    pub(crate) fn new(beliefs: ChangeBeliefs) -> Self {
         Self {
             beliefs,
             sums: RunningSums::new(),
@@ -85,7 +85,7 @@ impl ChangeFilter {
     /// ```text
     /// F(t) = Σ_s F(s)·p(change at s)·Π(1 − p)·evidence(s…t),   share(s) = summand/F(t)         [monitoring.7]
     /// ```
-    pub fn push(&mut self, flight: &FilteredFlight) {
+    pub(crate) fn push(&mut self, flight: &FilteredFlight) {
         let index = self.change.len();
         let probability = match flight.event_before {
             EventBefore::None => self.beliefs.change_within(flight.years - self.last_years),
@@ -146,29 +146,19 @@ impl ChangeFilter {
 
     /// Number of flights seen.
     #[must_use]
-    pub fn flights(&self) -> usize {
+    pub(crate) fn flights(&self) -> usize {
         self.change.len()
     }
 
     /// Natural logarithm of the density of all flights so far, up to a factor that no belief about changes alters.
     #[must_use]
-    pub fn log_density(&self) -> f64 {
+    pub(crate) fn log_density(&self) -> f64 {
         self.density[self.density.len() - 1]
-    }
-
-    /// Probability, given the flights so far, that the last change is at this flight or a later one: what can be said
-    /// tonight.
-    #[must_use]
-    pub fn changed_since(&self, flight: usize) -> f64 {
-        self.shares.last().map_or(0.0, |shares| {
-            let later = shares.iter().filter(|(start, _)| *start as usize >= flight.max(1));
-            later.map(|(_, share)| share).sum()
-        })
     }
 
     /// First flights of the pieces of the most probable division, from the second piece on, in order.
     #[must_use]
-    pub fn best_division(&self) -> Vec<usize> {
+    pub(crate) fn best_division(&self) -> Vec<usize> {
         let mut starts = Vec::new();
         let mut end = self.flights();
         while end > 0 {
@@ -187,7 +177,7 @@ impl ChangeFilter {
     /// R(n) = 1,   R(s) = Σ_t R(t)·share_t(s)                                                  [monitoring.8]
     /// ```
     #[must_use]
-    pub fn probabilities(&self) -> Vec<f64> {
+    pub(crate) fn probabilities(&self) -> Vec<f64> {
         let mut ends = vec![0.0; self.flights() + 1];
         if let Some(last) = ends.last_mut() {
             *last = 1.0;

@@ -9,7 +9,7 @@
 //! flow, and decides of what reference they speak.
 //!
 //! The one design decision: flights between two changes lie on a straight line, lines of different pieces are independent, and
-//! the probability of every division into pieces is summed exactly ([`ChangeFilter`]). The penalty for a change is its
+//! the probability of every division into pieces is summed exactly. The penalty for a change is its
 //! evidence, not a constant that was tuned; dates have intervals; a new night costs the same however long the history.
 //!
 //! Limits:
@@ -54,7 +54,6 @@ pub mod settings;
 
 pub use alert::{Alert, AlertRule, AlertRuleError};
 pub use conditions::{FlownConditions, FlownFlight, to_common_conditions};
-pub use filter::{ChangeFilter, EventBefore, FilteredFlight};
 pub use fleet::{FleetMean, fleet_mean};
 pub use history::{Bearing, Change, EventEffect, History, StepInGap, weighted_mean_percent};
 pub use levels::{Estimate, Levels, NORMAL_95};
