@@ -25,12 +25,18 @@ impl Compact<'_> {
         i64::try_from(number >> 1).ok().map(|half| half ^ -i64::from(number & 1 == 1))
     }
 
-    /// Seven bits a byte, the lowest first.
+    /// Seven bits a byte, the lowest first; `None` for one of more than 64 bits.
     pub fn number(&mut self) -> Option<u64> {
         let mut number = 0;
-        for place in 0..10 {
+        for place in (0..u64::BITS).step_by(7) {
             let byte = self.byte()?;
-            number |= u64::from(byte & 0x7f).checked_shl(7 * place)?;
+            let bits = u64::from(byte & 0x7f);
+            let placed = bits << place;
+            // The tenth byte has room for one bit only.
+            if placed >> place != bits {
+                return None;
+            }
+            number |= placed;
             if byte < 0x80 {
                 return Some(number);
             }
@@ -49,5 +55,29 @@ impl Compact<'_> {
     pub fn skip(&mut self, bytes: usize) -> Option<()> {
         self.0 = self.0.get(bytes..)?;
         Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand, of the protocol's specification (ULEB128): 300 is 0xac 0x02; the largest number of 64 bits is nine bytes of seven bits
+    /// and one more bit. A bit beyond it, or an eleventh byte, is no number.
+    #[test]
+    fn numbers_of_at_most_64_bits() {
+        let number = |bytes: &[u8]| Compact(bytes).number();
+        assert_eq!(number(&[0xac, 0x02]), Some(300));
+        assert_eq!(number(&[0xac]), None);
+        let ten = |last: u8| [[0xff; 9].as_slice(), &[last]].concat();
+        assert_eq!(number(&ten(0x01)), Some(u64::MAX));
+        for beyond in [0x02, 0x03, 0x7f] {
+            assert_eq!(number(&ten(beyond)), None, "{beyond}");
+        }
+        assert_eq!(number(&[[0x80; 10].as_slice(), &[0x00]].concat()), None);
+        // Zigzag: −1 is 1, −2 is 3, the least number of 64 bits the largest without a sign.
+        assert_eq!(Compact(&[0x01]).signed(), Some(-1));
+        assert_eq!(Compact(&[0x03]).signed(), Some(-2));
+        assert_eq!(Compact(&ten(0x01)).signed(), Some(i64::MIN));
     }
 }

@@ -1,39 +1,30 @@
 //! Levels, of which those of columns without lists say where a value is missing.
 
-/// Bytes of the levels at the beginning of a page, if these say that each of its values is there.
-///
-/// Levels of one bit are written as a length of four bytes and runs, which begin with a number of seven bits a byte, the lowest
-/// first: twice the length of a run of one value, which follows in a byte. (The other kind of run, of packed bits, is for levels
-/// that change.) Source: `Encodings.md`, "Run Length Encoding / Bit-Packing Hybrid".
+use crate::compact::Compact;
+
+/// Bytes of the levels at the beginning of a page, behind their length in four bytes, if these say that each of its values is there.
 pub(crate) fn without_levels(page: &[u8], values: u32) -> Option<usize> {
     let (length, behind) = page.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
-    let mut levels = behind.get(..length)?;
-    let mut left = u64::from(values);
-    while left > 0 {
-        let header = number(&mut levels)?;
-        let (level, behind) = levels.split_first()?;
-        if header % 2 == 1 || header == 0 || *level != 1 {
-            return None;
-        }
-        levels = behind;
-        left = left.saturating_sub(header / 2);
-    }
-    Some(4 + length)
+    all_are_there(behind.get(..length)?, values).then_some(4 + length)
 }
 
-/// A number of seven bits a byte, the lowest first; of at most 35 bits.
-pub(crate) fn number(bytes: &mut &[u8]) -> Option<u64> {
-    let mut number = 0;
-    for place in 0..5 {
-        let (byte, rest) = bytes.split_first()?;
-        *bytes = rest;
-        number |= u64::from(byte & 0x7f) << (7 * place);
-        if *byte < 0x80 {
-            return Some(number);
+/// Whether levels say that each of so many values is there.
+///
+/// Levels of one bit are written as runs, which begin with a number of seven bits a byte, the lowest first: twice the length of a run
+/// of one value, which follows in a byte. (The other kind of run, of packed bits, is for levels that change.) Source:
+/// `Encodings.md`, "Run Length Encoding / Bit-Packing Hybrid".
+fn all_are_there(levels: &[u8], values: u32) -> bool {
+    let mut rest = Compact(levels);
+    let mut left = u64::from(values);
+    while left > 0 {
+        let (Some(header), Some(level)) = (rest.number(), rest.byte()) else { return false };
+        if header % 2 == 1 || header == 0 || level != 1 {
+            return false;
         }
+        left = left.saturating_sub(header / 2);
     }
-    None
+    true
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! measured values have, and looked up in a table that has an entry for whatever 16 bits are, so that none is looked for in vain.
 
 use crate::Damage;
-use crate::levels::number;
+use crate::compact::Compact;
 
 /// Places that are unpacked together.
 const BLOCK: usize = 32;
@@ -214,8 +214,9 @@ impl Places {
     }
 
     fn begin_run(&mut self, page: &[u8]) -> Result<(), Damage> {
-        let mut rest = page.get(self.at..).ok_or(Damage::EndsEarly)?;
-        let head = number(&mut rest).ok_or(Damage::EndsEarly)?;
+        let mut rest = Compact(page.get(self.at..).ok_or(Damage::EndsEarly)?);
+        let head = rest.number().ok_or(Damage::EndsEarly)?;
+        let rest = rest.0;
         let from = page.len() - rest.len();
         let count = usize::try_from(head >> 1).map_err(|_| Damage::EndsEarly)?;
         if head & 1 == 0 {
