@@ -4,7 +4,7 @@
 //! decoder of columns of any kind.
 
 use crate::places::{Dictionary, Places};
-use crate::{Damage, Kind, without_levels};
+use crate::{Damage, Kind, all_are_there, without_levels};
 
 /// How a value is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,17 @@ impl Column {
                 definition_bytes,
                 repetition_bytes: 0,
                 ..
-            } => (values, encoding, definition_bytes as usize),
+            } => {
+                let from = definition_bytes as usize;
+                let levels = self.page.get(..from).ok_or(Damage::EndsEarly)?;
+                // That no value is missing the header states; what the levels say decides.
+                let is_whole =
+                    if self.has_levels { all_are_there(levels, values) } else { from == 0 };
+                if !is_whole {
+                    return Err(Damage::Otherwise("levels"));
+                }
+                (values, encoding, from)
+            }
             Kind::DataV2 { .. } => return Err(Damage::Otherwise("levels")),
         };
         self.way = match encoding {
@@ -370,6 +380,34 @@ mod tests {
         };
         assert_eq!(read(&mut column, &page, v2(0)).unwrap(), texts);
         assert_eq!(read(&mut column, &page, v2(1)), Err(Damage::Otherwise("levels")));
+    }
+
+    /// The header of a page of the second version states that no value is missing, and its levels say otherwise: a value that is not
+    /// there, one level too few, packed bits; levels of a column that has none, and levels longer than the page.
+    #[test]
+    fn levels_that_contradict_their_header_are_refused() {
+        let v2 = |definition_bytes| Kind::DataV2 {
+            values: 2,
+            nulls: 0,
+            rows: 2,
+            encoding: PLAIN,
+            definition_bytes,
+            repetition_bytes: 0,
+            is_packed: true,
+        };
+        let read = |levels: &[u8], has_levels, bytes| {
+            let page = [levels, &[0.5_f64, 3.0].map(f64::to_le_bytes).concat()].concat();
+            read(&mut Column::new(Form::Double, has_levels), &page, v2(bytes))
+        };
+        let both = Values::Numbers(vec![0.5, 3.0]);
+        assert_eq!(read(&[4, 1], true, 2), Ok(both.clone()));
+        assert_eq!(read(&[], false, 0), Ok(both));
+        for levels in [[4, 0], [2, 1], [3, 0b11]] {
+            assert_eq!(read(&levels, true, 2), Err(Damage::Otherwise("levels")), "{levels:?}");
+        }
+        assert_eq!(read(&[], true, 0), Err(Damage::Otherwise("levels")));
+        assert_eq!(read(&[4, 1], false, 2), Err(Damage::Otherwise("levels")));
+        assert_eq!(read(&[4, 1], true, 99), Err(Damage::EndsEarly));
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub(crate) fn without_levels(page: &[u8], values: u32) -> Option<usize> {
 /// Levels of one bit are written as runs, which begin with a number of seven bits a byte, the lowest first: twice the length of a run
 /// of one value, which follows in a byte. (The other kind of run, of packed bits, is for levels that change.) Source:
 /// `Encodings.md`, "Run Length Encoding / Bit-Packing Hybrid".
-fn all_are_there(levels: &[u8], values: u32) -> bool {
+pub(crate) fn all_are_there(levels: &[u8], values: u32) -> bool {
     let mut rest = Compact(levels);
     let mut left = u64::from(values);
     while left > 0 {

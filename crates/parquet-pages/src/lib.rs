@@ -15,7 +15,7 @@ pub use codec::{Codec, MOST_PAGE_BYTES, unpack};
 pub use column::{Column, Form, Values};
 pub use compact::Compact;
 pub use header::{Header, Kind, header};
-use levels::without_levels;
+use levels::{all_are_there, without_levels};
 
 /// Why a page is not read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
