@@ -11,17 +11,17 @@ use super::posterior::precision;
 use super::settings::SettingValues;
 use super::{BayesSettings, BayesState, InitialError, SolveError};
 
-/// How far and how fine [`tune`] searches.
+/// How far and how fine [`tune`] searches; it refuses one that has no end or no prior ([`TuneError::Search`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
-    /// No setting is changed by more than this factor, up or down.
+    /// No setting is changed by more than this factor, up or down; 1 or above.
     pub largest_factor: f64,
-    /// The search ends when a factor this small improves nothing.
+    /// The search ends when a factor this small improves nothing. Above 1, which factors come ever nearer to.
     pub smallest_factor: f64,
     /// The search ends after this many evaluations.
     pub maximum_evaluations: usize,
     /// How far a setting may be from its start: a factor of this size is one standard deviation of a log-normal prior.
-    /// Some tens of flights carry little information about some settings; without the prior those would wander.
+    /// Some tens of flights carry little information about some settings; without the prior those would wander. Above 1.
     pub prior_factor: f64,
     /// Whether the correction's size, slopes and bends are searched too, or only the noise.
     ///
@@ -70,6 +70,16 @@ pub enum TuneError {
     /// Prior plus information is not a positive definite precision matrix.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A number of the search is outside its limits.
+    #[error("{quantity} of the search is {value}, expected {limits}")]
+    Search {
+        /// Which.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it has to be.
+        limits: &'static str,
+    },
 }
 
 /// The number of changes that concern the correction; they come first.
@@ -110,6 +120,23 @@ impl Search {
         }
     }
 
+    /// Refuses factors with which the search would not end, or whose prior is no density.
+    fn check(&self) -> Result<(), TuneError> {
+        let (largest, smallest, prior) =
+            (self.largest_factor, self.smallest_factor, self.prior_factor);
+        let refused = |quantity, value, limits| Err(TuneError::Search { quantity, value, limits });
+        if largest.is_nan() || largest < 1.0 {
+            return refused("largest factor", largest, "1 or above");
+        }
+        if !smallest.is_finite() || smallest <= 1.0 {
+            return refused("smallest factor", smallest, "a number above 1");
+        }
+        if prior.is_nan() || prior <= 1.0 {
+            return refused("prior factor", prior, "above 1");
+        }
+        Ok(())
+    }
+
     /// Natural logarithm of the prior density of such factors, 0 at the start.
     fn log_prior(&self, factors: &[f64]) -> f64 {
         let deviations = factors.iter().map(|factor| factor.ln() / self.prior_factor.ln());
@@ -147,13 +174,14 @@ pub fn log_evidence(
 /// deviations found are 8 % too small.
 ///
 /// # Errors
-/// [`TuneError`] where the initial table cannot be corrected.
+/// [`TuneError`] where the initial table cannot be corrected, or the search has no end or no prior.
 pub fn tune(
     initial: &Table,
     start: BayesSettings,
     flights: &[Vec<Observation>],
     search: &Search,
 ) -> Result<Tuned, TuneError> {
+    search.check()?;
     let mut weights = outlier_weights_of(initial, start, flights)?;
     let mut best = (start, evidence(initial, start, flights, &weights)?);
     let mut factors = [1.0; CHANGES.len()];
@@ -171,7 +199,7 @@ pub fn tune(
             });
         }
         let mut step = 2.0_f64;
-        while step >= search.smallest_factor {
+        while step >= search.smallest_factor && evaluations < search.maximum_evaluations {
             let mut improved = false;
             let searched = if search.with_correction { 0 } else { CORRECTION };
             for (k, &(changed, _)) in CHANGES.iter().enumerate().skip(searched) {

@@ -1,7 +1,8 @@
 //! Settings fitted to past flights, and the exported polynomial.
 
 use adapt::bayes::{
-    BayesSettings, Posterior, Search, SettingValues, log_evidence, polynomial_export, tune,
+    BayesSettings, Posterior, Search, SettingValues, TuneError, log_evidence, polynomial_export,
+    tune,
 };
 use lut::surface::{Basis, Surface};
 
@@ -51,6 +52,36 @@ fn log_prior(settings: &BayesSettings, start: &BayesSettings) -> f64 {
     };
     let pairs = of_noise(settings).into_iter().zip(of_noise(start));
     pairs.map(|(now, then)| -0.5 * (now / then).log2().powi(2)).sum()
+}
+
+/// A search that would halve its steps without end, or has no prior, is refused; one with the finest of steps ends with its evaluations.
+#[test]
+fn every_search_ends() {
+    let initial = table(&grid(0.05, 0.95), believed_drag);
+    let noise = Noise { segment: 0.005, flight: 0.025 };
+    let flights = Fleet::new(901).flights(5, noise, times(&initial, 1.0));
+    let standard = Search::standard();
+    let tuned = |search: Search| tune(&initial, BayesSettings::physical_2026(), &flights, &search);
+    for search in [
+        Search { smallest_factor: 1.0, ..standard },
+        Search { smallest_factor: 0.5, ..standard },
+        Search { smallest_factor: f64::NAN, ..standard },
+        Search { smallest_factor: f64::INFINITY, ..standard },
+        Search { prior_factor: 1.0, ..standard },
+        Search { prior_factor: f64::NAN, ..standard },
+        Search { largest_factor: 0.9, ..standard },
+        Search { largest_factor: f64::NAN, ..standard },
+    ] {
+        let refused = tuned(search);
+        assert!(matches!(refused, Err(TuneError::Search { .. })), "{search:?}: {refused:?}");
+    }
+    let finest =
+        Search { smallest_factor: 1.0 + f64::EPSILON, maximum_evaluations: 30, ..standard };
+    // The second round begins with an evaluation of its own.
+    assert!(tuned(finest).unwrap().evaluations <= 31);
+    // Without a limit or a prior the search is one by evidence alone.
+    let free = Search { largest_factor: f64::INFINITY, prior_factor: f64::INFINITY, ..standard };
+    assert!(tuned(free).unwrap().log_evidence >= tuned(standard).unwrap().path[0].log_evidence);
 }
 
 /// On the golden baseline the evidence is better than the defaults', and unseen flights are not worse for it.
