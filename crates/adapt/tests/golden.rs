@@ -123,10 +123,15 @@ fn learn(law: PaperLaw, state: &mut State, segments: &[FlightSegment]) -> Counts
                 unusable @ Update::Unusable { .. } => panic!("{unusable:?}"),
             }
         }
-        let (drag_coefficient, confidence) = state.tables_mut();
-        let report =
-            refit(RefitRule::ghazi_2020(), Basis::SeparableQuadratic, drag_coefficient, confidence)
-                .unwrap();
+        let (mut drag_coefficient, mut confidence) = state.clone().into_tables();
+        let report = refit(
+            RefitRule::ghazi_2020(),
+            Basis::SeparableQuadratic,
+            &mut drag_coefficient,
+            &mut confidence,
+        )
+        .unwrap();
+        *state = State::from_tables(drag_coefficient, confidence).unwrap();
         counts.refits += usize::from(report.fit.is_some());
     }
     counts

@@ -140,10 +140,11 @@ fn learn_observations(
             // On copies: a flight whose refit fails leaves no trace.
             let (mut new_state, mut new_adapted) = (state.clone(), ever_adapted.clone());
             learn_by_paper(law, &mut new_state, &mut new_adapted, observations, &mut result);
-            let (drag_coefficient, confidence) = new_state.tables_mut();
+            let (mut drag_coefficient, mut confidence) = new_state.into_tables();
             let basis = initial.polynomial().basis;
-            let report =
-                refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
+            let rule = RefitRule::ghazi_2020();
+            let report = refit::refit(rule, basis, &mut drag_coefficient, &mut confidence)?;
+            let new_state = paper::State::from_tables(drag_coefficient, confidence)?;
             if report.fit.is_some() {
                 result.refitted = true;
                 *refits += 1;
@@ -290,6 +291,9 @@ pub enum LearningError {
     /// The global refit of law `paper`.
     #[error(transparent)]
     Refit(#[from] refit::RefitError),
+    /// The tables of law `paper` after the refit.
+    #[error(transparent)]
+    Paper(#[from] paper::StateError),
     /// The initial table, for law `bayes`.
     #[error(transparent)]
     Initial(#[from] InitialError),

@@ -70,17 +70,11 @@ impl State {
         &self.confidence
     }
 
-    /// Both tables, drag coefficient and confidence, by value.
+    /// Both tables, drag coefficient and confidence, by value: what changes them makes a state of them again by
+    /// [`Self::from_tables`].
     #[must_use]
     pub fn into_tables(self) -> (Table, Table) {
         (self.drag_coefficient, self.confidence)
-    }
-
-    /// Both tables, drag coefficient and confidence, for a global refit. Confidences must stay 1 or more, and both
-    /// tables on the grid.
-    #[must_use]
-    pub const fn tables_mut(&mut self) -> (&mut Table, &mut Table) {
-        (&mut self.drag_coefficient, &mut self.confidence)
     }
 
     pub(super) fn values_mut(&mut self) -> (&mut [f64], &mut [f64]) {
