@@ -1,8 +1,8 @@
 //! Law `bayes`: a smooth Gaussian correction of the initial table, with its uncertainty.
 //!
-//! The table is the initial one times (1 + x), with one number x per node (of a table with more than 40 breakpoints along an
-//! axis, per so manieth node). A prior states that x is smooth and about 10
-//! % in size; every segment observes the four nodes around it; the solution estimates x and its uncertainty everywhere,
+//! The table is the initial one times (1 + x), with one number x per node; along an axis with more than 40 breakpoints, 40 of
+//! them carry such numbers, evenly chosen, and x is bilinear between them. A prior states that x is smooth and about 10 % in
+//! size; every segment observes the four nodes around it; the solution estimates x and its uncertainty everywhere,
 //! including nodes never visited. The book's page on law `bayes` has equations, sources and measured figures.
 //!
 //! What is fixed: [`BayesSettings`] belong to the initial model and learning never changes them; [`tune`] finds better

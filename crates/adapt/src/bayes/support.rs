@@ -144,7 +144,8 @@ fn at(grid: &Grid, x: f64, y: f64) -> Terms {
     }
 }
 
-/// Every so manieth breakpoint, the first and the last among them; `None` where all may stay.
+/// [`MOST_BREAKPOINTS`] of the breakpoints, as evenly by their places as whole numbers allow, the first and the last among them;
+/// `None` where all may stay.
 fn thinned(axis: &Axis) -> Option<Axis> {
     let points = axis.breakpoints();
     if points.len() <= MOST_BREAKPOINTS {
