@@ -15,8 +15,8 @@ pub(crate) struct MonitorArgs {
     /// Events to measure: date,tail,kind,note (wash, `engine_change`, …)
     #[arg(long, value_name = "EVENTS.csv")]
     pub(crate) events: Option<PathBuf>,
-    /// Only flights that began on or after this date (2026-03-02, or an instant with its offset): what is shown of a tail, its
-    /// reference conditions too, is then of these flights, and a night takes no longer for the years before them
+    /// Only flights that began on or after this date (2026-03-02, or an instant with its offset): what is shown of a tail is then
+    /// of these flights, at the mean conditions of all of its flights, and a night takes no longer for the years before them
     #[arg(long, value_name = "DATE", value_parser = date)]
     pub(crate) since: Option<flight::Timestamp>,
     /// Print a row for each month instead of one for each tail
