@@ -191,10 +191,12 @@ impl BayesState {
         if let Some(newest) = other.newest {
             self.decay_to(newest);
         }
+        // A state without a segment has no newest instant of its own.
+        self.newest = self.newest.max(other.newest);
         self.information.merge(&other.information);
         self.expected_residual.merge(&other.expected_residual);
-        self.flights += other.flights;
-        self.segments += other.segments;
+        self.flights = self.flights.saturating_add(other.flights);
+        self.segments = self.segments.saturating_add(other.segments);
         Ok(())
     }
 

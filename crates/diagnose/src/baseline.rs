@@ -3,6 +3,7 @@
 
 use effects::{BetweenNodes, EffectReferences, Response, Variable};
 use faer::Mat;
+use flight::MAXIMUM_ENGINES;
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::gauge_level::GaugeLevel;
@@ -99,6 +100,36 @@ impl BaselineRecord {
         core::mem::take(&mut self.factor)
     }
 
+    /// Whether every number is one that learning can have written: a file may have been changed by hand.
+    fn check_values(&self) -> Result<(), BaselineError> {
+        if self.contrasts > MAXIMUM_ENGINES {
+            let (found, most) = (self.contrasts, MAXIMUM_ENGINES);
+            return Err(BaselineError::TooMany { quantity: "contrasts of engines", found, most });
+        }
+        let expected_finite: [(&'static str, &[f64]); 8] = [
+            ("means", &self.mean),
+            ("loadings of the drag table", &self.drag),
+            ("deck coefficients", &self.deck_coefficients),
+            ("centers of the deck", &self.deck_centers),
+            ("carried effects", &self.standing_effects),
+            ("means of carried effects", &self.standing_means),
+            ("covariance factor", &self.factor),
+            ("share of the remainder that is thrust", core::slice::from_ref(&self.thrust_share)),
+        ];
+        for (quantity, numbers) in expected_finite {
+            every(quantity, numbers, "a finite number", |_| true)?;
+        }
+        let noise = &self.noise;
+        let factors = noise.within.iter().chain(&noise.between).chain([&noise.fuel_flow_with_n2]);
+        every("noise factors", factors, "0 or more", |number| number >= 0.0)?;
+        let variances = &self.standing_variances;
+        every("variances of carried effects", variances, "0 or more", |number| number >= 0.0)?;
+        let positive = |number| number > 0.0;
+        every("scales of smooth functions", &self.scales, "more than 0", positive)?;
+        every("interval factor", [&self.interval_factor], "more than 0", positive)?;
+        every("remaining rms", [&self.rms], "0 or more", |number| number >= 0.0)
+    }
+
     /// Nodes of the drag table whose covariances its loadings need ([`TableUncertainty::pivots`]); none where the table was
     /// taken as exact.
     #[must_use]
@@ -107,45 +138,81 @@ impl BaselineRecord {
     }
 }
 
-/// Numbers that are not a baseline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{quantity}: {found} numbers, expected {expected}")]
-pub struct BaselineLengthError {
+/// Whether all numbers are finite and as they have to be.
+fn every<'n>(
     quantity: &'static str,
-    found: usize,
-    expected: usize,
+    numbers: impl IntoIterator<Item = &'n f64>,
+    expected: &'static str,
+    may_be: impl Fn(f64) -> bool,
+) -> Result<(), BaselineError> {
+    let wrong = numbers.into_iter().find(|number| !(number.is_finite() && may_be(**number)));
+    wrong.map_or(Ok(()), |&found| Err(BaselineError::Value { quantity, found, expected }))
+}
+
+/// Numbers that are not a baseline.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BaselineError {
+    /// Numbers that are missing or left over.
+    #[error("{quantity}: {found} numbers, expected {expected}")]
+    Length {
+        /// Of what.
+        quantity: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there have to be.
+        expected: usize,
+    },
+    /// A number that cannot be.
+    #[error("{quantity}: found {found}, expected {expected}")]
+    Value {
+        /// Of what.
+        quantity: &'static str,
+        /// The number.
+        found: f64,
+        /// What it has to be.
+        expected: &'static str,
+    },
+    /// More of something than any aircraft has.
+    #[error("{quantity}: found {found}, expected at most {most}")]
+    TooMany {
+        /// Of what.
+        quantity: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
 }
 
 impl Baseline {
     /// A baseline that was written, with what was believed of the drag table before its flights.
     ///
     /// # Errors
-    /// [`BaselineLengthError`] where numbers are missing or left over.
+    /// [`BaselineError`] where numbers are missing, left over, not finite or not positive where they have to be.
     pub fn new(
         parts: BaselineRecord,
         table: Option<TableUncertainty>,
-    ) -> Result<Self, BaselineLengthError> {
+    ) -> Result<Self, BaselineError> {
+        parts.check_values()?;
         let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0), of_another: false };
         baseline.scale_smooth();
-        let check = |quantity, found, expected| {
-            if found == expected {
-                Ok(())
-            } else {
-                Err(BaselineLengthError { quantity, found, expected })
-            }
-        };
         let layout = baseline.layout();
         let parts = &baseline.parts;
-        check("means", parts.mean.len(), layout.contrasts.end)?;
-        check("deck coefficients", parts.deck_coefficients.len(), DECK_TERMS)?;
-        check("carried effects", parts.standing_effects.len(), STANDING_EFFECTS.len())?;
-        check("means of carried effects", parts.standing_means.len(), STANDING_EFFECTS.len())?;
-        check("nodes of the drag table", parts.drag_nodes.len(), layout.drag.len())?;
-        check("loadings of the drag table", parts.drag.len(), layout.drag.len())?;
         let width = layout.len();
-        let factor = parts.interval_factor;
-        check("interval factor above 0", usize::from(factor.is_finite() && factor > 0.0), 1)?;
-        check("covariance factor", parts.factor.len(), width * (width + 1) / 2)?;
+        for (quantity, found, expected) in [
+            ("means", parts.mean.len(), layout.contrasts.end),
+            ("deck coefficients", parts.deck_coefficients.len(), DECK_TERMS),
+            ("carried effects", parts.standing_effects.len(), STANDING_EFFECTS.len()),
+            ("means of carried effects", parts.standing_means.len(), STANDING_EFFECTS.len()),
+            ("nodes of the drag table", parts.drag_nodes.len(), layout.drag.len()),
+            ("loadings of the drag table", parts.drag.len(), layout.drag.len()),
+            ("covariance factor", parts.factor.len(), width * (width + 1) / 2),
+        ] {
+            if found != expected {
+                return Err(BaselineError::Length { quantity, found, expected });
+            }
+        }
         let mut factor = Mat::zeros(width, width);
         let mut values = parts.factor.iter();
         for i in 0..width {

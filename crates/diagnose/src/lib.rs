@@ -131,7 +131,7 @@ pub use effects::{Form, Variable};
 
 pub use attainable::{KnownClutter, attainable};
 pub use baseline::gauge_level::GaugeLevel;
-pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
+pub use baseline::{Baseline, BaselineError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
 pub use fleet::found::{FleetDiagnosis, FleetFinding, FleetLevel};

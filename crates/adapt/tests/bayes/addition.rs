@@ -63,6 +63,20 @@ fn halves_add_up_to_the_whole() {
     }
 }
 
+/// A state that learnt no segment, as of flights outside the table, takes over the instant from which on the other's knowledge ages.
+#[test]
+fn nothing_and_something_is_something() {
+    let (initial, flights) = (initial(), forty_flights());
+    let settings = settings_with_half_life(20.0);
+    let something = learnt(&initial, settings, &flights[..5]);
+    let nothing = BayesState::new(&initial, settings).unwrap();
+    let (mut forth, mut back) = (something.clone(), nothing.clone());
+    forth.merge(&nothing).unwrap();
+    back.merge(&something).unwrap();
+    assert_same(&forth, &back, 1e-12);
+    assert_eq!((forth.newest(), back.newest()), (something.newest(), something.newest()));
+}
+
 #[test]
 fn merging_is_associative() {
     let (initial, flights) = (initial(), forty_flights());

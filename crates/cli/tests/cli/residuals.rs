@@ -100,7 +100,7 @@ fn fuel_factors_are_against_the_book() {
     let names =
         ["fuel_factor_percent_of_predicted", "fuel_factor_ci95_low", "fuel_factor_ci95_high"];
     for (stated, name) in stated.into_iter().zip(names) {
-        let written = numbers(&factors, name)[0];
+        let written: f64 = factors[name][0].parse().unwrap();
         assert!((stated.as_f64().unwrap() - written).abs() < 1e-9, "{name}: {stated} {written}");
     }
 }

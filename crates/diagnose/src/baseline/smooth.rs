@@ -143,11 +143,15 @@ impl LeftOfProcess {
 
 /// Numbers that are not a smooth function.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a smooth function of {count} knots from {} to {} at a length of {length}", .knots.0, .knots.1)]
+#[error(
+    "a smooth function of {count} knots from {} to {} at a length of {length}, a guide that goes on by {} and {}",
+    .knots.0, .knots.1, .guide.0, .guide.1
+)]
 pub(crate) struct SmoothError {
     count: usize,
     knots: (f64, f64),
     length: f64,
+    guide: (f64, f64),
 }
 
 impl Smooth {
@@ -523,11 +527,12 @@ impl<const N: usize> Kernels<N> {
 impl TryFrom<SmoothText> for Smooth {
     type Error = SmoothError;
     fn try_from(text: SmoothText) -> Result<Self, SmoothError> {
-        let SmoothText { count, knots, length, middle, .. } = text;
-        let wrong = SmoothError { count, knots, length };
+        let SmoothText { count, knots, length, middle, guide, .. } = text;
+        let wrong = SmoothError { count, knots, length, guide };
         let finite = knots.0.is_finite() && knots.1.is_finite() && middle.is_finite();
+        let reaches = [guide.0, guide.1].iter().all(|reach| (0.0..f64::INFINITY).contains(reach));
         let spread = knots.1 > knots.0 && length > 0.0 && length.is_finite();
-        if !finite || !spread || !(2..=SMOOTH_MOST_KNOTS).contains(&count) {
+        if !finite || !spread || !reaches || !(2..=SMOOTH_MOST_KNOTS).contains(&count) {
             return Err(wrong);
         }
         let mut smooth = Self { text, root: Mat::zeros(0, 0), rows: Vec::new() };

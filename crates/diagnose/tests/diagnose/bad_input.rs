@@ -173,6 +173,30 @@ fn a_baseline_reads_back_to_the_same_bits() {
     assert_eq!(read(&text).unwrap().unwrap(), taught);
     assert!(read(&text.replacen("mean:[", "mean:[1.0,", 1)).unwrap().is_err());
     assert!(read(&text.replacen("length:", "length:-", 1)).is_err());
+    // The first number of a field, changed by hand.
+    let with = |field: &str, value: &str| {
+        let start = text.find(&format!("{field}:")).unwrap() + field.len() + 1;
+        let start = start + text[start..].find(|sign: char| !"([".contains(sign)).unwrap();
+        let end = start + text[start..].find([',', ')', ']']).unwrap();
+        read(&format!("{}{value}{}", &text[..start], &text[end..]))
+    };
+    assert!((with("rms", "0.01").unwrap().unwrap().remaining_rms() - 0.01).abs() < 1e-15);
+    for (field, value) in [
+        ("contrasts", "18446744073709551615"),
+        ("scales", "NaN"),
+        ("scales", "0.0"),
+        ("mean", "NaN"),
+        ("factor", "inf"),
+        ("within", "-1.0"),
+        ("interval_factor", "0.0"),
+        ("thrust_share", "NaN"),
+    ] {
+        let error = with(field, value).unwrap().expect_err(field).to_string();
+        assert!(error.contains("expected"), "{field}: {error}");
+    }
+    let with_guide =
+        |reach: &str| read(&text.replacen("count:", &format!("guide:{reach},count:"), 1));
+    assert!(with_guide("(0.5,0.0)").is_ok() && with_guide("(0.5,-30.0)").is_err());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use adapt::bayes::StateDataError;
 use adapt::paper::StateError;
-use diagnose::BaselineLengthError;
+use diagnose::BaselineError;
 use effects::EffectModelError;
 use lut::TableError;
 use perf_model::{AircraftError, ModelError};
@@ -122,5 +122,5 @@ pub enum ModelValueError {
     Belief(#[from] BeliefError),
     /// Parts of what was learnt that do not belong together.
     #[error(transparent)]
-    Baseline(#[from] BaselineLengthError),
+    Baseline(#[from] BaselineError),
 }
