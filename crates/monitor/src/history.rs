@@ -12,6 +12,7 @@ use crate::settings::{ChangeBeliefs, REPORTED_PROBABILITY};
 
 mod dated;
 mod gap;
+mod trend;
 
 use dated::{changes, nearest};
 pub use gap::StepInGap;
@@ -48,6 +49,15 @@ pub enum Bearing {
     Possible,
     /// The same, rather than others about the same time: an exchange of the engine that the series is of.
     Likely,
+}
+
+/// What is known of steps beforehand.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct KnownSteps {
+    /// When a part of what the series sums up stepped: levels and trend step there too, by whatever the flights say.
+    pub of_a_part: Vec<Timestamp>,
+    /// When something was done to burn less, such as a wash, whatever the flights say of each: the trend is that between them.
+    pub to_burn_less: Vec<Timestamp>,
 }
 
 /// What an event did.
@@ -101,17 +111,17 @@ impl History {
         events: &[(Timestamp, Bearing)],
         beliefs: &ChangeBeliefs,
     ) -> Option<Self> {
-        Self::fit_with_steps(series, events, &[], beliefs)
+        Self::fit_with_steps(series, events, &KnownSteps::default(), beliefs)
     }
 
-    /// The same where a part of what the series sums up is known to have stepped at these instants: levels and trend step there too,
-    /// by whatever the flights say. A change that the flights show in addition to these steps is one of its own; one that may be
-    /// these, which lie within the interval of its date, is theirs: it begins at the nearest, and its size is that of all of them.
+    /// The same where more is known of some instants. A change that the flights show in addition to steps of a part is one of its own; one
+    /// that may be these, which lie within the interval of its date, is theirs: it begins at the nearest, and its size is that of all of
+    /// them.
     #[must_use]
     pub fn fit_with_steps(
         series: &Series,
         events: &[(Timestamp, Bearing)],
-        steps: &[Timestamp],
+        steps: &KnownSteps,
         beliefs: &ChangeBeliefs,
     ) -> Option<Self> {
         let noise = Noise::estimate(series);
@@ -131,7 +141,7 @@ impl History {
             .collect();
         let is_inside = |flight: &usize| (1..series.len()).contains(flight);
         let known: Vec<usize> =
-            steps.iter().map(|time| series.first_from(*time)).filter(is_inside).collect();
+            steps.of_a_part.iter().map(|time| series.first_from(*time)).filter(is_inside).collect();
         let recorded: Vec<usize> = at_flight.iter().copied().filter(is_inside).collect();
         let recorded = merged(&recorded, &known);
         let mut boundaries = Vec::new();
@@ -152,14 +162,25 @@ impl History {
                 break;
             }
         }
-        let of_series = Asked::new(series, &weights, &[], *beliefs);
-        levels = levels.with_trend(stepped.trend(&of_series, &boundaries)?);
+        let done: Vec<usize> = steps
+            .to_burn_less
+            .iter()
+            .map(|time| series.first_from(*time))
+            .filter(is_inside)
+            .collect();
+        let shown = levels.at_mean_conditions(series);
+        let asked = Asked::new(&shown, &weights, &[], *beliefs).beside(&done);
+        let stepped = stepped_events(&asked, &changes, (&candidates, &known))?;
+        let of_series = Asked::new(series, &weights, &[], *beliefs).beside(&done);
+        // Asked in place of the trend as it is where nothing else stepped.
+        let step_in_gap = gap::step_instead(series, &weights, &levels, (&recorded, beliefs));
+        levels =
+            levels.with_trend(trend::averaged(&stepped, &of_series, (&boundaries, &recorded))?);
         let measured = Levels::fit(series, &weights, &merged(&boundaries, &recorded), beliefs)?;
         let events = (0..events.len())
             .map(|event| effect(event, &at_flight, (&levels, &measured)))
             .collect();
         let at_mean_conditions = levels.at_mean_conditions(series);
-        let step_in_gap = gap::step_instead(series, &weights, &levels, (&recorded, beliefs));
         Some(Self { noise, weights, changes, levels, step_in_gap, events, at_mean_conditions })
     }
 
@@ -227,7 +248,7 @@ fn stepped_events(
     changes: &[Change],
     (candidates, known): (&[Candidate], &[usize]),
 ) -> Option<SteppedEvents> {
-    let Asked { series, weights, ref beliefs, middle_percent, .. } = *asked;
+    let Asked { series, ref beliefs, middle_percent, .. } = *asked;
     let found: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
     // What is known to be a step is one in every set, whatever else is found about its date.
     let is_asked = |flight: &usize| {
@@ -240,8 +261,7 @@ fn stepped_events(
     let ln_believed = at_event.ln() - (-at_event).ln_1p();
     let ln_evidence = |kept: &[usize]| {
         let boundaries = merged(&found, &merged(known, kept));
-        let levels = Levels::fit(series, weights, &boundaries, beliefs)?;
-        Some(levels.ln_evidence(middle_percent, beliefs))
+        Some(asked.levels(&boundaries, beliefs)?.ln_evidence(middle_percent, beliefs))
     };
     let ln_posterior = |kept: &[usize]| Some(ln_evidence(kept)? + kept.len() as f64 * ln_believed);
     let mut with_all = ln_posterior(&kept)?;
@@ -283,33 +303,6 @@ impl SteppedEvents {
         let within = || self.known.iter().filter(is_within).copied();
         let nearest = within().min_by_key(|flight| flight.abs_diff(change.first_flight))?;
         Some((nearest, (within().min()?, within().max()?)))
-    }
-
-    /// The trend over the sets of events that were weighed (all that may be steps, and each with one left out on the way to those that
-    /// are): what it would be with an event left out counts as much as leaving it out is probable.
-    ///
-    /// ```text
-    /// t = Σ p_S·t_S,  variance Σ p_S·(v_S + (t_S − t)²)                                          [monitoring.24]
-    /// ```
-    ///
-    /// # Source
-    /// Madigan and Raftery 1994, doi 10.1080/01621459.1994.10476894: averaging over the models that are not far less probable.
-    fn trend(&self, asked: &Asked<'_>, found: &[usize]) -> Option<Estimate> {
-        let most = self.weighed.iter().map(|(_, ln)| *ln).fold(f64::NEG_INFINITY, f64::max);
-        let mut trends = Vec::with_capacity(self.weighed.len());
-        for (set, ln) in &self.weighed {
-            let boundaries = merged(found, set);
-            let levels = Levels::fit(asked.series, asked.weights, &boundaries, &asked.beliefs)?;
-            trends.push(((ln - most).exp(), levels.trend_percent_per_year()));
-        }
-        if let [(_, only)] = trends[..] {
-            return Some(only);
-        }
-        let total: f64 = trends.iter().map(|(weight, _)| weight).sum();
-        let value = trends.iter().map(|(weight, trend)| weight * trend.value).sum::<f64>() / total;
-        let spread = |trend: &Estimate| trend.deviation.powi(2) + (trend.value - value).powi(2);
-        let variance = trends.iter().map(|(weight, trend)| weight * spread(trend)).sum::<f64>();
-        Some(Estimate { value, deviation: (variance / total).sqrt() })
     }
 }
 
@@ -363,6 +356,8 @@ struct Asked<'a> {
     /// Flights before which an event was recorded.
     events: &'a [usize],
     beliefs: ChangeBeliefs,
+    /// First flights after something was done to burn less, where that is allowed for.
+    done: &'a [usize],
     /// The median deviation, %.
     middle_percent: f64,
 }
@@ -379,7 +374,17 @@ impl<'a> Asked<'a> {
             .iter()
             .map(super::series::FlightDeviation::deviation_percent)
             .collect();
-        Self { series, weights, events, beliefs, middle_percent: median(&mut all) }
+        Self { series, weights, events, beliefs, done: &[], middle_percent: median(&mut all) }
+    }
+
+    /// The same beside what was done to burn less before these flights.
+    fn beside(self, done: &'a [usize]) -> Self {
+        Self { done, ..self }
+    }
+
+    /// Levels between boundaries.
+    fn levels(&self, boundaries: &[usize], beliefs: &ChangeBeliefs) -> Option<Levels> {
+        Levels::fit_beside(self.series, self.weights, (boundaries, self.done), beliefs)
     }
 
     /// A filter that has seen all flights, before some of which nothing can have changed.

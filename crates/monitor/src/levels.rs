@@ -32,8 +32,10 @@ impl Estimate {
 /// text books have it, so that intervals can be checked by hand.
 pub const NORMAL_95: f64 = 1.96;
 
-/// Columns of the regression besides the pieces: years, and conditions.
-const COLUMNS: usize = 1 + CONDITIONS;
+/// Columns of the regression besides the pieces: years, conditions, and how often something was done to burn less.
+const COLUMNS: usize = 2 + CONDITIONS;
+/// The place of the last.
+const TIMES_DONE: usize = COLUMNS - 1;
 type Row = SVector<f64, COLUMNS>;
 
 /// A trend common to all pieces, what conditions change, and the level of each piece.
@@ -41,7 +43,8 @@ type Row = SVector<f64, COLUMNS>;
 pub struct Levels {
     boundaries: Vec<usize>,
     pieces: Vec<PieceMeans>,
-    /// Trend, % a year, and what a standard deviation of each condition changes, %.
+    /// Trend, % a year, what a standard deviation of each condition changes, %, and what the mean of what is done to burn less changes
+    /// more than is believed, %.
     coefficients: Row,
     covariance: SMatrix<f64, COLUMNS, COLUMNS>,
     /// Standard deviation of the trend before the flights are seen, % a year.
@@ -53,6 +56,21 @@ pub struct Levels {
     /// ln |Σ Sxx + Λ| − ln |Λ|.
     ln_volume: f64,
     flights: usize,
+    done: Done,
+}
+
+/// First flights after something was done to burn less, and what each is believed to change, %.
+#[derive(Clone, Debug, PartialEq)]
+struct Done {
+    flights: Vec<usize>,
+    believed_percent: f64,
+}
+
+impl Done {
+    /// How often before a flight.
+    fn times(&self, flight: usize) -> f64 {
+        self.flights.iter().filter(|done| **done <= flight).count() as f64
+    }
 }
 
 /// Weighted means of a piece.
@@ -82,6 +100,19 @@ impl Levels {
         boundaries: &[usize],
         beliefs: &ChangeBeliefs,
     ) -> Option<Self> {
+        Self::fit_beside(series, weights, (boundaries, &[]), beliefs)
+    }
+
+    /// The same where something was done to burn less before these flights, as much each time: x has how often, believed beforehand to
+    /// change so much as [`ChangeBeliefs::to_burn_less_percent`] says.
+    pub(crate) fn fit_beside(
+        series: &Series,
+        weights: &[f64],
+        (boundaries, done): (&[usize], &[usize]),
+        beliefs: &ChangeBeliefs,
+    ) -> Option<Self> {
+        let [believed_percent, _] = beliefs.to_burn_less_percent;
+        let done = Done { flights: done.to_vec(), believed_percent };
         let flights = series.len().min(weights.len());
         if flights == 0 {
             return None;
@@ -95,7 +126,7 @@ impl Levels {
         let starts = core::iter::once(0).chain(kept.iter().copied());
         let ends = kept.iter().copied().chain(core::iter::once(flights));
         let rows: Vec<(Row, f64, f64)> = (0..flights)
-            .map(|k| (row(series, k), series.flights()[k].deviation_percent(), weights[k]))
+            .map(|k| (row(series, k, &done), beside(series, k, &done), weights[k]))
             .collect();
         let mut information = information_before(beliefs);
         let ln_before: f64 = information.diagonal().map(f64::ln).sum();
@@ -127,6 +158,7 @@ impl Levels {
             residual: squares - coefficients.dot(&right),
             ln_volume,
             flights,
+            done,
         })
     }
 
@@ -226,6 +258,37 @@ impl Levels {
         series.at_mean_conditions(&self.by_condition_percent())
     }
 
+    /// What one step more would be before each flight that is not the first of its piece.
+    ///
+    /// ```text
+    /// z: 1 from the flight on to the end of its piece, about its mean there
+    /// J = S_zz − S_zxᵀ C S_zx,  e = Σ w·z·(y − level − b·x)                                    [monitoring.26]
+    /// ```
+    pub(crate) fn steps_beside(&self, series: &Series, weights: &[f64]) -> Vec<StepBeside> {
+        let mut steps = Vec::with_capacity(self.flights);
+        let starts = core::iter::once(0).chain(self.boundaries.iter().copied());
+        let ends = self.boundaries.iter().copied().chain(core::iter::once(self.flights));
+        for ((from, to), piece) in starts.zip(ends).zip(&self.pieces) {
+            // Sums over the flights from the end of the piece back to the one before which the step lies.
+            let (mut weight, mut along, mut score) = (0.0, Row::zeros(), 0.0);
+            for first_flight in (from + 1..to).rev() {
+                let apart = row(series, first_flight, &self.done) - piece.mean_x;
+                let y = beside(series, first_flight, &self.done) - piece.mean_y;
+                let own = weights[first_flight];
+                weight += own;
+                along += own * apart;
+                score += own * (y - self.coefficients.dot(&apart));
+                let with_trend = self.covariance * along;
+                let alone = weight * (piece.weight - weight) / piece.weight;
+                // What is left of rounding is no information.
+                let information = (alone - along.dot(&with_trend)).max(0.0);
+                let trend = with_trend[0];
+                steps.push(StepBeside { first_flight, information, score, trend });
+            }
+        }
+        steps
+    }
+
     fn variance_along(&self, apart: &Row) -> f64 {
         (apart.transpose() * self.covariance * apart)[0].max(0.0)
     }
@@ -235,6 +298,42 @@ impl Levels {
     pub fn last_level_percent(&self, series: &Series) -> Estimate {
         let years = series.flights().last().map_or(0.0, |flight| series.years(flight.time()));
         self.level_percent(self.flights - 1, years)
+    }
+}
+
+/// A step beside the boundaries of [`Levels`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepBeside {
+    /// First flight after it.
+    pub(crate) first_flight: usize,
+    /// J: what the flights say of its size, %⁻².
+    information: f64,
+    /// e, %⁻¹.
+    score: f64,
+    /// `(C S_zx)` of the trend: what a step of 1 % takes from it, % a year.
+    trend: f64,
+}
+
+impl StepBeside {
+    /// ln of the density of the flights with a step of this standard deviation beforehand over that without one.
+    ///
+    /// ```text
+    /// ½ [e²/(J + 1/σ²) − ln(1 + σ² J)]                                                         [monitoring.27]
+    /// ```
+    pub(crate) fn ln_odds(&self, deviation_percent: f64) -> f64 {
+        let variance = deviation_percent.powi(2);
+        0.5 * (self.score.powi(2) / (self.information + variance.recip())
+            - (variance * self.information).ln_1p())
+    }
+
+    /// The trend beside it: `b − C S_zx·e/(J + 1/σ²)`, variance `C + (C S_zx)²/(J + 1/σ²)`.
+    pub(crate) fn trend(&self, levels: &Levels, deviation_percent: f64) -> Estimate {
+        let variance = (self.information + deviation_percent.powi(-2)).recip();
+        let (before, size) = (levels.trend_percent_per_year(), variance * self.score);
+        Estimate {
+            value: before.value - self.trend * size,
+            deviation: (before.deviation.powi(2) + self.trend.powi(2) * variance).sqrt(),
+        }
     }
 }
 
@@ -253,13 +352,24 @@ fn information_before(beliefs: &ChangeBeliefs) -> SMatrix<f64, COLUMNS, COLUMNS>
     let mut information = SMatrix::<f64, COLUMNS, COLUMNS>::zeros();
     information.fill_diagonal(beliefs.condition_deviation_percent.powi(-2));
     information[(0, 0)] = beliefs.slope_deviation_percent_per_year.powi(-2);
+    let [_, done] = beliefs.to_burn_less_percent;
+    information[(TIMES_DONE, TIMES_DONE)] = done.powi(-2);
     information
 }
 
-fn row(series: &Series, flight: usize) -> Row {
+fn row(series: &Series, flight: usize, done: &Done) -> Row {
     let years = series.years(series.flights()[flight].time());
     let conditions = series.conditions().get(flight).copied().unwrap_or_default();
-    Row::from_fn(|k, _| if k == 0 { years } else { conditions[k - 1] })
+    Row::from_fn(|k, _| match k {
+        0 => years,
+        TIMES_DONE => done.times(flight),
+        _ => conditions[k - 1],
+    })
+}
+
+/// The deviation of a flight without what is believed of what was done to burn less, %.
+fn beside(series: &Series, flight: usize, done: &Done) -> f64 {
+    series.flights()[flight].deviation_percent() - done.believed_percent * done.times(flight)
 }
 
 #[cfg(test)]
@@ -289,6 +399,67 @@ mod tests {
         let with = without.clone().under(&conditions).unwrap();
         for series in [without, with] {
             checked_by_dense_least_squares(&series, &days, &y, &weights);
+        }
+    }
+
+    /// Oracle: regression with dense matrices. Flat levels of three pieces beside a slope, how often something was done and one step
+    /// more, each with its prior; the densities are those of normal numbers with this covariance, in which levels vary by 1000 %.
+    #[test]
+    fn a_step_more_is_that_of_dense_least_squares() {
+        const WIDTH: usize = 6;
+        let days = [0, 3, 9, 20, 31, 60, 61, 80, 120, 200, 230, 365];
+        let y = [0.1, 0.3, -0.2, 0.4, -0.8, -0.5, -0.9, -0.4, -0.6, 1.2, 1.4, 1.0];
+        let weights = [4.0, 2.0, 1.0, 4.0, 3.0, 4.0, 4.0, 2.0, 4.0, 1.0, 4.0, 4.0];
+        let flights = days.iter().zip(y).map(|(&day, y)| {
+            let time = Timestamp::from_second(86_400 * day).unwrap();
+            FlightDeviation::of_segments(time, &[y]).unwrap()
+        });
+        let series = Series::new(flights.collect()).unwrap();
+        let beliefs = ChangeBeliefs::of_2026();
+        let [believed, done_deviation] = beliefs.to_burn_less_percent;
+        let done = [2, 7];
+        let levels = Levels::fit_beside(&series, &weights, (&[4, 9], &done), &beliefs).unwrap();
+        let times = |k: usize| done.iter().filter(|done| **done <= k).count() as f64;
+        let piece = |k: usize| usize::from(k >= 4) + usize::from(k >= 9);
+        let above = DVector::from_fn(12, |k, _| y[k] - believed * times(k));
+        let steps = levels.steps_beside(&series, &weights);
+        assert_eq!(steps.len(), 12 - 3);
+        for step in steps {
+            for size in beliefs.unrecorded_step_deviations_percent {
+                let is_after =
+                    |k: usize| k >= step.first_flight && piece(k) == piece(step.first_flight);
+                let design = DMatrix::from_fn(12, WIDTH, |k, column| match column {
+                    0 => days[k] as f64 / 365.25,
+                    1 => times(k),
+                    2 => f64::from(u8::from(is_after(k))),
+                    _ => f64::from(u8::from(piece(k) == column - 3)),
+                });
+                let fit = |of_step: f64| {
+                    let prior = DVector::from_vec(vec![
+                        beliefs.slope_deviation_percent_per_year.powi(2),
+                        done_deviation.powi(2),
+                        of_step,
+                        1e6,
+                        1e6,
+                        1e6,
+                    ]);
+                    let spread = DMatrix::from_diagonal(&prior);
+                    let noise = DVector::from_fn(12, |k, _| 1.0 / weights[k]);
+                    let covariance =
+                        &design * &spread * design.transpose() + DMatrix::from_diagonal(&noise);
+                    let cholesky = covariance.cholesky().unwrap();
+                    let ln = -0.5 * above.dot(&cholesky.solve(&above))
+                        - cholesky.l().diagonal().map(f64::ln).sum();
+                    let gain = &spread * design.transpose() * cholesky.inverse();
+                    let (mean, left) = (&gain * &above, &spread - &gain * &design * &spread);
+                    (ln, Estimate { value: mean[0], deviation: left[(0, 0)].sqrt() })
+                };
+                let ((without, _), (with, expected)) = (fit(0.0), fit(size * size));
+                let (found, trend) = (step.ln_odds(size), step.trend(&levels, size));
+                assert!((found - (with - without)).abs() < 1e-4, "{step:?} {with} {without}");
+                assert!((trend.value - expected.value).abs() < 1e-4, "{trend:?} {expected:?}");
+                assert!((trend.deviation - expected.deviation).abs() < 1e-4, "{trend:?}");
+            }
         }
     }
 

@@ -55,7 +55,9 @@ pub mod settings;
 pub use alert::{Alert, AlertRule, AlertRuleError};
 pub use conditions::{FlownConditions, FlownFlight, to_common_conditions};
 pub use fleet::{FleetMean, fleet_mean};
-pub use history::{Bearing, Change, EventEffect, History, StepInGap, weighted_mean_percent};
+pub use history::{
+    Bearing, Change, EventEffect, History, KnownSteps, StepInGap, weighted_mean_percent,
+};
 pub use levels::{Estimate, Levels, NORMAL_95};
 pub use months::{Month, months};
 pub use noise::Noise;

@@ -23,6 +23,12 @@ pub struct ChangeBeliefs {
     /// Probability that something changes where an event (wash, engine change) is recorded: most are meant to change
     /// something, not all do. Between two flights without an event it is never more likely, however long the aircraft stood.
     pub change_at_event: f64,
+    /// What is done to burn less (a wash, a polish) changes, mean of one tail's and its standard deviation, %: washed compressors are
+    /// said to give back 0.3 to 1 %, a washed airframe some tenths. One that gives nothing is a standard deviation off.
+    pub to_burn_less_percent: [f64; 2],
+    /// Standard deviations of a step that nobody recorded and that no flight shows clearly, %, each as likely: a typical step, and a third of
+    /// one (fuel of another supplier, a sensor, standard masses).
+    pub unrecorded_step_deviations_percent: [f64; 2],
     /// Largest probability, before the flights are seen, that something changed among those about a date: that nothing did is
     /// never believed to be less likely, however many months they span. Twenty flights in two years may hide a change by the
     /// calendar, which is no sign of one.
@@ -40,6 +46,8 @@ impl ChangeBeliefs {
             condition_deviation_percent: 0.5,
             changes_per_year: 1.0,
             change_at_event: 0.5,
+            to_burn_less_percent: [-0.5, 0.5],
+            unrecorded_step_deviations_percent: [0.5, 1.5],
             change_at_most: 0.5,
         }
     }

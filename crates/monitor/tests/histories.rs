@@ -3,8 +3,8 @@
 
 use flight::Timestamp;
 use monitor::{
-    CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation, History, Levels, Noise, Series,
-    SeriesError,
+    Bearing, CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation, History, KnownSteps,
+    Levels, Noise, Series, SeriesError,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -227,7 +227,8 @@ fn what_is_known_to_have_stepped_steps_beside_what_is_found() {
     let Change { first_flight, earliest, latest, .. } = alone.changes[0];
     assert_eq!((first_flight, earliest, latest), (60, 8, 101));
     let with = |steps: &[i64]| {
-        let steps: Vec<Timestamp> = steps.iter().copied().map(day).collect();
+        let of_a_part = steps.iter().copied().map(day).collect();
+        let steps = KnownSteps { of_a_part, ..KnownSteps::default() };
         History::fit_with_steps(&series, &[], &steps, &beliefs).unwrap()
     };
     let measured = |found: &History, boundaries: &[usize], place: usize| {
@@ -273,7 +274,9 @@ fn what_is_known_makes_and_hides_no_change() {
             let y = y.map(|(at, z)| f64::from(u8::from(at >= 60)) * step + 0.5 * z);
             let series = daily(y.collect::<Vec<_>>());
             without += i32::try_from(history(&series, &[]).changes.len()).unwrap();
-            let found = History::fit_with_steps(&series, &[], &dates(case), &beliefs).unwrap();
+            let of_a_part = dates(case).to_vec();
+            let steps = KnownSteps { of_a_part, ..KnownSteps::default() };
+            let found = History::fit_with_steps(&series, &[], &steps, &beliefs).unwrap();
             for change in &found.changes {
                 with += 1;
                 let size = change.step_percent;
@@ -504,4 +507,70 @@ fn conditions_are_those_of_the_flights() {
     let mut conditions = [[1.0; CONDITIONS]; 3];
     conditions[1][2] = f64::NAN;
     assert_eq!(series.under(&conditions).unwrap_err(), SeriesError::NotFinite { index: 1 });
+}
+
+/// 100 flights in two years, by what happened to the tail: wear between washes that are listed, wear alone, a step that nobody recorded
+/// and no wear. What was planted lies in the stated 95 % interval of the trend in 93 % of 200 series each, three standard errors of
+/// the count allowed (0.88); a step of 0.6 % in 0.88, of which hardly any flight tells when it was.
+#[test]
+fn a_stated_trend_holds_beside_steps() {
+    struct Case {
+        trend: f64,
+        washes: Vec<f64>,
+        wash_percent: f64,
+        step: Option<(f64, f64)>,
+        least: u32,
+    }
+    let washes =
+        |count: usize| (1..=count).map(|k| 730.0 * k as f64 / (count as f64 + 1.0)).collect();
+    let case = |trend, washes: Vec<f64>, wash_percent, step| Case {
+        trend,
+        washes,
+        wash_percent,
+        step,
+        least: 176,
+    };
+    let cases = [
+        case(0.0, vec![], 0.0, None),
+        case(1.2, vec![], 0.0, None),
+        case(2.0, washes(3), -0.8, None),
+        case(2.0, washes(7), -0.45, None),
+        case(1.2, washes(2), -0.7, None),
+        case(1.2, washes(1), -1.0, None),
+        case(1.0, washes(4), -0.2, None),
+        case(0.0, vec![], 0.0, Some((402.0, 2.0))),
+        Case { least: 167, ..case(0.0, vec![], 0.0, Some((402.0, 0.6))) },
+    ];
+    // Whole minutes.
+    let at = |days: f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "of two years")]
+        let minutes = (1440.0 * days) as i64;
+        Timestamp::from_second(60 * minutes).unwrap()
+    };
+    let beliefs = ChangeBeliefs::of_2026();
+    let mut noise = normal(31);
+    for case in cases {
+        let mut held = 0;
+        for _ in 0..200 {
+            let flights = (0..100).map(|k| {
+                let days = 7.3 * (f64::from(k) + 0.5);
+                let washed = case.washes.iter().filter(|wash| **wash <= days).count() as f64;
+                let step =
+                    case.step.map_or(0.0, |(from, size)| if days >= from { size } else { 0.0 });
+                let level = case.trend * days / 365.25 + washed * case.wash_percent + step;
+                let level = level + 0.6 * noise.next().unwrap();
+                let segments: Vec<f64> = noise.by_ref().take(8).map(|z| level + 0.4 * z).collect();
+                FlightDeviation::of_segments(at(days), &segments).unwrap()
+            });
+            let series = Series::new(flights.collect()).unwrap();
+            let events: Vec<(Timestamp, Bearing)> =
+                case.washes.iter().map(|days| (at(*days), Bearing::Possible)).collect();
+            let to_burn_less = events.iter().map(|(time, _)| *time).collect();
+            let steps = KnownSteps { to_burn_less, ..KnownSteps::default() };
+            let found = History::fit_with_steps(&series, &events, &steps, &beliefs).unwrap();
+            let trend = found.levels.measured_trend_percent_per_year().unwrap();
+            held += u32::from((trend.value - case.trend).abs() <= trend.half_width95());
+        }
+        assert!(held >= case.least, "{held} of 200: {} % a year, {:?}", case.trend, case.step);
+    }
 }

@@ -1,10 +1,13 @@
+use units::convert::DAYS_PER_YEAR;
+
 use super::*;
 use crate::FlightDeviation;
 
-/// By hand: one event, so that there are two sets, with it and without it; each trend counts as much as its set is probable, and what
-/// they differ by is added to the variance.
+/// By hand: one event, so that there are two sets, with it and without it, each alone and with a step more before each other flight,
+/// of a tail that ages and of one that hardly does; each trend counts as much as it is probable, and what they differ by is added to the
+/// variance.
 #[test]
-fn the_trend_is_that_of_both_where_an_event_may_be_a_step_or_none() {
+fn the_trend_is_that_of_all_that_may_have_stepped() {
     let beliefs = ChangeBeliefs::of_2026();
     let day = |days: i64| Timestamp::from_second(1_700_000_000 + 86_400 * days).unwrap();
     // 1 % a year with 0.4 % of noise that alternates, and a step of −0.3 % in the middle.
@@ -16,18 +19,37 @@ fn the_trend_is_that_of_both_where_an_event_may_be_a_step_or_none() {
     let series = Series::new(flights.collect()).unwrap();
     let found = History::fit(&series, &[day(180)], &beliefs).unwrap();
     assert!(found.changes.is_empty());
-    let with = Levels::fit(&series, &found.weights, &[30], &beliefs).unwrap();
-    let without = Levels::fit(&series, &found.weights, &[], &beliefs).unwrap();
+    let steady = ChangeBeliefs { slope_deviation_percent_per_year: 0.3, ..beliefs };
     let middle = Asked::new(&series, &found.weights, &[], beliefs).middle_percent;
-    let ln = |levels: &Levels| levels.ln_evidence(middle, &beliefs);
-    let believed = beliefs.change_at_event / (1.0 - beliefs.change_at_event);
-    let odds = believed * (ln(&with) - ln(&without)).exp();
-    let p = odds / (1.0 + odds);
-    assert!((0.05..0.95).contains(&p), "{p}: one of both alone tests nothing");
-    let (a, b) = (with.trend_percent_per_year(), without.trend_percent_per_year());
-    let value = p * a.value + (1.0 - p) * b.value;
-    let variance = p * (a.deviation.powi(2) + (a.value - value).powi(2))
-        + (1.0 - p) * (b.deviation.powi(2) + (b.value - value).powi(2));
+    // A change a year, six days from flight to flight.
+    let odds_of_a_step = (6.0 / DAYS_PER_YEAR).exp_m1();
+    let mut parts: Vec<(f64, Estimate)> = Vec::new();
+    for boundaries in [&[30][..], &[]] {
+        let believed: f64 = 1.0;
+        for (beliefs, is_stated) in [(beliefs, true), (steady, false)] {
+            let levels = Levels::fit(&series, &found.weights, boundaries, &beliefs).unwrap();
+            let share = believed * levels.ln_evidence(middle, &beliefs).exp();
+            if is_stated {
+                parts.push((share, levels.trend_percent_per_year()));
+            }
+            for step in levels.steps_beside(&series, &found.weights) {
+                if step.first_flight != 30 {
+                    parts.extend([0.5, 1.5].map(|size| {
+                        let odds = 0.5 * odds_of_a_step * step.ln_odds(size).exp();
+                        (share * odds, step.trend(&levels, size))
+                    }));
+                }
+            }
+        }
+    }
+    let total: f64 = parts.iter().map(|(share, _)| share).sum();
+    let largest = parts.iter().map(|(share, _)| *share).fold(0.0, f64::max);
+    assert!(largest < 0.8 * total, "{largest} of {total}: one alone tests nothing");
+    let mean = |of: &dyn Fn(&Estimate) -> f64| -> f64 {
+        parts.iter().map(|(share, part)| share * of(part)).sum::<f64>() / total
+    };
+    let value = mean(&|part| part.value);
+    let variance = mean(&|part| part.deviation.powi(2) + (part.value - value).powi(2));
     let trend = found.levels.trend_percent_per_year();
     assert!((trend.value - value).abs() < 1e-9, "{} {value}", trend.value);
     assert!((trend.deviation - variance.sqrt()).abs() < 1e-9, "{} {variance}", trend.deviation);
@@ -50,13 +72,10 @@ fn what_is_known_to_be_a_step_is_no_trend() {
     let unknown = History::fit_to_events(&series, &[], &beliefs).unwrap();
     assert!(unknown.changes.is_empty());
     assert!(unknown.levels.trend_percent_per_year().value > 0.5);
-    let known = [day(199), day(-1)];
+    let known = KnownSteps { of_a_part: vec![day(199), day(-1)], ..KnownSteps::default() };
     let found = History::fit_with_steps(&series, &[], &known, &beliefs).unwrap();
-    let beside = Levels::fit(&series, &found.weights, &[20], &beliefs).unwrap();
-    let (trend, expected) =
-        (found.levels.trend_percent_per_year(), beside.trend_percent_per_year());
-    assert!((trend.value - expected.value).abs() < 1e-12, "{trend:?} {expected:?}");
-    assert!((trend.deviation - expected.deviation).abs() < 1e-12, "{trend:?} {expected:?}");
+    assert_eq!(found.levels.boundaries(), [20]);
+    let trend = found.levels.trend_percent_per_year();
     assert!(trend.value.abs() < 0.6 * unknown.levels.trend_percent_per_year().value, "{trend:?}");
     assert_eq!(found.levels.boundaries(), [20]);
     assert!(found.changes.is_empty(), "a step that is known is not found");

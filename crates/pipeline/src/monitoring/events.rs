@@ -25,6 +25,8 @@ const OF_AIRFRAME: [&str; 12] = [
     "wash", "polish", "paint", "weighing", "retrofit", "winglet", "rigging", "seal", "flap",
     "slat", "cabin", "interior",
 ];
+/// Words of kinds that are done again and again to burn less.
+const TO_BURN_LESS: [&str; 4] = ["wash", "clean", "rinse", "polish"];
 /// Words of kinds and notes that change engines.
 const OF_ENGINES: [&str; 4] = ["engine", "compressor", "turbine", "nacelle"];
 
@@ -48,6 +50,13 @@ impl Event {
     pub fn is_of_airframe(&self) -> bool {
         let kind = self.kind.to_lowercase();
         OF_AIRFRAME.iter().any(|word| kind.contains(word)) && !self.names_engines()
+    }
+
+    /// Whether the event is one of those that are done again and again to burn less: what wears in between they take back.
+    #[must_use]
+    pub fn is_to_burn_less(&self) -> bool {
+        let kind = self.kind.to_lowercase();
+        TO_BURN_LESS.iter().any(|word| kind.contains(word))
     }
 
     pub(super) fn names_engines(&self) -> bool {
@@ -239,6 +248,7 @@ mod tests {
                 ([of_first, of_second], of_airframe),
                 "{event:?}"
             );
+            assert_eq!(event.is_to_burn_less(), kind.contains("wash"), "{event:?}");
         }
     }
 

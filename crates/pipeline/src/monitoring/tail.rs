@@ -9,7 +9,7 @@ use monitor::airbus;
 use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
 use monitor::{
     AlertRule, Bearing, CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation,
-    FlownConditions, FlownFlight, History, Month, Noise, Series, SeriesError, months,
+    FlownConditions, FlownFlight, History, KnownSteps, Month, Noise, Series, SeriesError, months,
     weighted_mean_percent, years_between,
 };
 
@@ -133,8 +133,11 @@ fn engines_of(
             flights.iter().map(|&place| all[place].conditions.to_monitor(reference)).collect();
         let series = Series::new(shown.collect())?.under(&conditions)?;
         let bearing = |event: &&Event| (event.time, event.bearing_on_engine(engine + 1));
+        let bears = |event: &&&Event| bearing(event).1 != Bearing::None && event.is_to_burn_less();
+        let to_burn_less = events.iter().filter(bears).map(|event| event.time).collect();
+        let steps = KnownSteps { to_burn_less, ..KnownSteps::default() };
         let events: Vec<_> = events.iter().map(bearing).collect();
-        let history = History::fit_to_events(&series, &events, &beliefs);
+        let history = History::fit_with_steps(&series, &events, &steps, &beliefs);
         of_each.extend(history);
     }
     Ok(EngineSeries { flights, of_each })
@@ -175,7 +178,11 @@ impl<'a> MonitoredTail<'a> {
         };
         let bearings: Vec<_> = events.iter().enumerate().map(bearing).collect();
         // An engine that stepped by itself takes all of them along, by its share of the flow.
-        let steps: Vec<Timestamp> = engines.steps().map(|flight| flights[flight].start).collect();
+        let to_burn_less = events.iter().filter(|event| event.is_to_burn_less());
+        let steps = KnownSteps {
+            of_a_part: engines.steps().map(|flight| flights[flight].start).collect(),
+            to_burn_less: to_burn_less.map(|event| event.time).collect(),
+        };
         let Some(history) = History::fit_with_steps(&series, &bearings, &steps, &beliefs) else {
             return Ok(None);
         };

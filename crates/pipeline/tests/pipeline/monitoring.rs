@@ -271,16 +271,16 @@ fn a_trend_that_may_be_a_step_in_a_gap_says_so() {
     let step = tail.step_in_gap.as_ref().unwrap();
     assert_eq!((&step.after, &step.until), (&start(87), &start(210)));
     assert!((step.step_percent.value - 0.9).abs() < step.step_percent.half_width(), "{step:?}");
-    assert_eq!(document.alerts[0].step_in_gap.as_ref(), Some(step));
+    // What may be a step is no trend that an alert can be raised for.
+    assert!(document.alerts.is_empty(), "{:?}", document.alerts);
     let printed = text(&document, Rows::Tails);
     let words = "or one step of ";
-    assert_eq!(printed.matches(words).count(), 2, "{printed}");
+    assert_eq!(printed.matches(words).count(), 1, "{printed}");
     assert!(printed.lines().all(|line| line.chars().count() <= 80), "{printed}");
-    for table in tables(&document).iter().filter(|table| ["tails", "alerts"].contains(&table.name))
-    {
-        let csv = String::from_utf8(table.columns.to_csv()).unwrap();
-        assert!(csv.contains("step_in_gap_percent_ci95_low") && csv.contains(&start(87)), "{csv}");
-    }
+    let tables = tables(&document);
+    let tails = tables.iter().find(|table| table.name == "tails").unwrap();
+    let csv = String::from_utf8(tails.columns.to_csv()).unwrap();
+    assert!(csv.contains("step_in_gap_percent_ci95_low") && csv.contains(&start(87)), "{csv}");
 }
 
 /// A tail of sixty flights about a Mach number, which burns so much more than the others, by an initial model whose error falls by
