@@ -111,8 +111,7 @@ impl Life {
             let level = self.wear_percent_per_year * day / DAYS_PER_YEAR
                 + stepped.map(|(_, size)| size).sum::<f64>()
                 + NOISE[0] * normal();
-            let segments: Vec<f64> =
-                (0..SEGMENTS).map(|_| level + NOISE[1] * normal()).collect();
+            let segments: Vec<f64> = (0..SEGMENTS).map(|_| level + NOISE[1] * normal()).collect();
             FlightDeviation::of_segments(instant(day), &segments).expect("finite numbers")
         });
         Series::new(flown.collect()).expect("in order")
