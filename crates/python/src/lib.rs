@@ -64,6 +64,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("PREDICTED_COLUMNS", perf_model::PREDICTED_COLUMNS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

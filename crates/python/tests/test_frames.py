@@ -107,6 +107,20 @@ def test_the_columns_of_a_prediction_do_not_depend_on_values(initial):
     assert initial.predict({**POINTS, "anti_ice": [0] * 6}, columns=["error_percent"]).column("error_percent").null_count == 6
 
 
+@pytest.mark.parametrize("columns", [None, ["fuel_flow_kg_s"]])
+@pytest.mark.parametrize("library", [pl.DataFrame, pd.DataFrame, pa.table])
+def test_columns_of_an_earlier_prediction_are_left_out(initial, segments, library, columns):
+    """As a table of pyarrow has them: none stays that another model predicted."""
+    given = library({**POINTS, "X-row": list("abcdef")})
+    of_another = initial.adapt(segments).model().predict(given)
+    assert "remainder_percent" in list(getattr(of_another, "column_names", of_another.columns))
+    again, once = (initial.predict(points, columns=columns) for points in (of_another, given))
+    if library is pd.DataFrame:
+        pd.testing.assert_frame_equal(again, once)
+    else:
+        assert again.equals(once)
+
+
 def test_types_that_came_in_go_out(initial, flow_of_mach):
     """Also where the library that computes does not have the type, or decodes it to read it."""
     numbers = [2**60 + 1, 2**60 + 3, None, 5, 6, 7]

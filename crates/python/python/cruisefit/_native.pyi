@@ -5,6 +5,7 @@ from os import PathLike
 from typing import Any, Protocol
 
 __version__: str
+PREDICTED_COLUMNS: Sequence[str]
 
 class ArrowStream(Protocol):
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...

@@ -7,10 +7,12 @@ import importlib.util
 import sys
 from typing import TYPE_CHECKING, Any, cast
 
+from . import _native
+
 if TYPE_CHECKING:
     from ._native import ArrowStream
 
-__all__ = ["Table", "as_points", "as_stream", "is_frame", "is_table", "like", "with_columns"]
+__all__ = ["Table", "as_points", "as_stream", "is_frame", "is_table", "like", "with_prediction"]
 
 # A table of pyarrow, polars, pandas, DuckDB or any other library; none of them is required to be installed.
 Table = Any
@@ -72,11 +74,17 @@ def as_points(value: Table) -> ArrowStream:
     return _of_polars(value[:, places])
 
 
-def with_columns(frame: Table, added: ArrowStream) -> Table:
-    """A frame with further columns, in its own library: its own columns keep their types and, of pandas, it keeps its index."""
+def with_prediction(frame: Table, added: ArrowStream) -> Table:
+    """A frame with the columns of a prediction, in its own library: its own columns keep their types and, of pandas, it keeps
+    its index. Those of an earlier prediction are left out, as in a table of any other library: beside the new ones they would
+    be read as of the same model."""
+    of_flights = [str(name).strip() not in _native.PREDICTED_COLUMNS for name in frame.columns]
     if _is_frame_of(frame, "polars"):
-        return frame.hstack(_module("polars").DataFrame(added))
+        kept = frame[:, [place for place, keep in enumerate(of_flights) if keep]]
+        return kept.hstack(_module("polars").DataFrame(added))
     columns = _module("pyarrow").table(added).to_pandas()
+    if not all(of_flights):
+        frame = frame.loc[:, of_flights]
     # As arrays: their rows are those of the frame, whatever its index calls them.
     return frame.assign(**{name: columns[name].to_numpy() for name in columns.columns})
 

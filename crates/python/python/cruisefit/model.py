@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._pages import Chart, TailChart, names_of, read_text, write_bytes
-from ._tables import Table, as_points, is_frame, like, with_columns
+from ._tables import Table, as_points, is_frame, like, with_prediction
 from .errors import InputError, PredictionWarning, expected, warn
 from .segments import Segments
 
@@ -118,7 +118,8 @@ class Model:
             ``fuel_flow_kg_s`` (all engines), ``fuel_flow_std_kg_s`` (null by law
             ``paper``), ``specific_range_m_kg``, ``lift_coefficient``, ``drag_coefficient``, ``extrapolated`` (1 outside the
             guide's range), where measured fuel flow is a column ``error_percent`` = 100 (measured − predicted)/measured, and
-            where more than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Results are null
+            where more than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Columns
+            of these names in the table are left out: they are of another prediction. Results are null
             where the point is outside the model's table or lacks a value that it needs (null or NaN), and a
             :class:`PredictionWarning` says how many are.
 
@@ -137,7 +138,7 @@ class Model:
             if strict:
                 raise InputError(message, line=row)
             warnings.warn(message, PredictionWarning, stacklevel=2)
-        return with_columns(points, table) if adds_columns else like(table, points)
+        return with_prediction(points, table) if adds_columns else like(table, points)
 
     def adapt(
         self,
