@@ -46,6 +46,8 @@ pub(crate) fn picture(py: Python<'_>, svg: String, format: &str) -> PyResult<(Ve
 pub(crate) fn plot_trials(json: &str) -> PyResult<String> {
     let wrong = |error: serde_json::Error| Failure::input(format!("trials.json: {error}"));
     let mut document: serde_json::Value = serde_json::from_str(json).map_err(wrong)?;
-    let groups = serde_json::from_value::<Vec<page::TrialConfusion>>(document["groups"].take());
+    // A document may be a list, a number or a text, which have nothing by a name.
+    let groups = document.get_mut("groups").map(serde_json::Value::take).unwrap_or_default();
+    let groups = serde_json::from_value::<Vec<page::TrialConfusion>>(groups);
     Ok(drawn(page::plot_trials(&groups.map_err(wrong)?))?)
 }

@@ -104,6 +104,14 @@ def test_wrong_arguments():
         cruisefit.Segments.from_table(3, "C750")
 
 
+@pytest.mark.parametrize("text", ["[]", "1", '"x"', "null", "{}", '{"groups": 3}'])
+def test_what_is_no_trials_json_is_refused(tmp_path, text):
+    file = tmp_path / "trials.json"
+    file.write_text(text)
+    with pytest.raises(cruisefit.InputError, match=r"trials\.json: invalid type"):
+        cruisefit.plot_trials(file)
+
+
 def test_threads_of_python_at_once(initial):
     points = pa.table({name: values * 1000 for name, values in POINTS.items()})
     expected = initial.predict(points)
