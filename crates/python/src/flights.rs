@@ -57,10 +57,7 @@ impl Source {
     /// `mapping`: the text of a mapping file, or the name of a preset.
     #[new]
     fn new(criteria: String, mapping: Option<&str>) -> PyResult<Self> {
-        let found = TrimCriteria::preset(&criteria).ok_or_else(|| {
-            let known = TrimCriteria::PRESETS;
-            Failure::input(format!("criteria: found {criteria:?}, expected one of {known:?}"))
-        })?;
+        let found = criteria_of(&criteria)?;
         let mapping = mapping.map(mapping_of).transpose()?;
         Ok(Self { mapping, criteria: found, criteria_name: criteria })
     }
@@ -192,6 +189,17 @@ fn read_all<T: Sync>(
         .collect()
 }
 
+/// The trim criteria of a name.
+///
+/// # Errors
+/// A name of none.
+fn criteria_of(name: &str) -> Result<TrimCriteria, Failure> {
+    TrimCriteria::preset(name).ok_or_else(|| {
+        let known = TrimCriteria::PRESETS;
+        Failure::input(format!("criteria: found {name:?}, expected one of {known:?}"))
+    })
+}
+
 fn mapping_of(text: &str) -> Result<Mapping, Failure> {
     if let Some(preset) = Mapping::preset(text) {
         return Ok(preset);
@@ -225,6 +233,7 @@ impl Flights {
     /// Flights and segments from the table that [`Self::state`] gave.
     #[staticmethod]
     fn from_state(py: Python<'_>, table: AnyRecordBatch, criteria: String) -> PyResult<Self> {
+        criteria_of(&criteria)?;
         let batches = batches_of(table)?;
         let flights = run(py, NonZeroUsize::new(1), move |_| {
             let text = to_csv(&plain(batches)?, Whose::Ours)?;
@@ -241,6 +250,8 @@ impl Flights {
         aircraft_type: String,
         criteria: String,
     ) -> PyResult<Self> {
+        // A model states them, and is continued by them alone.
+        criteria_of(&criteria)?;
         let batches = batches_of(table)?;
         let flights = run(py, NonZeroUsize::new(1), move |_| {
             let text = to_csv(&plain(batches)?, Whose::Ours)?;

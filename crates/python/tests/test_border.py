@@ -104,6 +104,14 @@ def test_wrong_arguments():
         cruisefit.Segments.from_table(3, "C750")
 
 
+def test_criteria_of_a_table_are_those_that_segment_knows(segments):
+    refused = "criteria: found \"nonsense\", expected one of .*ghazi-2020-table-4"
+    with pytest.raises(cruisefit.InputError, match=refused):
+        cruisefit.Segments.from_table(segments.table(), "C750", criteria="nonsense")
+    with pytest.raises(cruisefit.InputError, match=refused):
+        cruisefit.Segments.from_state(segments.state(), criteria="nonsense")
+
+
 @pytest.mark.parametrize("text", ["[]", "1", '"x"', "null", "{}", '{"groups": 3}'])
 def test_what_is_no_trials_json_is_refused(tmp_path, text):
     file = tmp_path / "trials.json"

@@ -126,7 +126,7 @@ class Segments:
         """Flights from :meth:`state`.
 
         Raises:
-            InputError: A column is missing, or a value is not what its column holds.
+            InputError: A column is missing, a value is not what its column holds, or there are no such criteria.
         """
         return cls(_native.Flights.from_state(as_stream(table), criteria))
 
@@ -142,7 +142,7 @@ class Segments:
             criteria: Trim criteria by which the segments were found.
 
         Raises:
-            InputError: A column is missing, or a value is not what its column holds.
+            InputError: A column is missing, a value is not what its column holds, or there are no such criteria.
         """
         return cls(_native.Flights.from_segments(as_stream(table), aircraft_type, criteria))
 
