@@ -133,14 +133,16 @@ pub(crate) fn explain(topic: Option<&str>) -> PyResult<String> {
 
 /// The library: id, unit and perturbation of every effect that an aircraft of so many engines can have.
 #[pyfunction]
-pub(crate) fn effects(engines: usize) -> Vec<(String, String, String)> {
-    EffectId::library(engines.min(flight::MAXIMUM_ENGINES))
-        .iter()
-        .map(|effect| {
-            let entry = effect.entry();
-            (effect.to_string(), entry.unit.to_owned(), entry.perturbation.to_owned())
-        })
-        .collect()
+pub(crate) fn effects(engines: i128) -> PyResult<Vec<(String, String, String)>> {
+    let most = flight::MAXIMUM_ENGINES;
+    let known = usize::try_from(engines).ok().filter(|number| (1..=most).contains(number));
+    let number = known
+        .ok_or_else(|| Failure::input(format!("engines: found {engines}, expected 1 to {most}")))?;
+    let of_library = EffectId::library(number).into_iter().map(|effect| {
+        let entry = effect.entry();
+        (effect.to_string(), entry.unit.to_owned(), entry.perturbation.to_owned())
+    });
+    Ok(of_library.collect())
 }
 
 #[pymethods]

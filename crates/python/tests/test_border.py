@@ -112,6 +112,13 @@ def test_criteria_of_a_table_are_those_that_segment_knows(segments):
         cruisefit.Segments.from_state(segments.state(), criteria="nonsense")
 
 
+@pytest.mark.parametrize("engines", [0, -1, 5, 9, 2**70])
+def test_a_library_of_no_engines_or_too_many_is_refused(engines):
+    assert len(cruisefit.effects(1)) < len(cruisefit.effects(4))
+    with pytest.raises(cruisefit.InputError, match=f"engines: found {engines}, expected 1 to 4"):
+        cruisefit.effects(engines)
+
+
 @pytest.mark.parametrize("text", ["[]", "1", '"x"', "null", "{}", '{"groups": 3}'])
 def test_what_is_no_trials_json_is_refused(tmp_path, text):
     file = tmp_path / "trials.json"

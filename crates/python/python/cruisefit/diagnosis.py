@@ -333,7 +333,14 @@ def diagnose(
 
 
 def effects(engines: int = 2) -> list[tuple[str, str, str]]:
-    """The library of effects of an aircraft with so many engines: name, unit, what it changes."""
+    """The library of effects of an aircraft with so many engines: name, unit, what it changes.
+
+    Args:
+        engines: Number of engines, 1 to 4.
+
+    Raises:
+        InputError: Another number of engines.
+    """
     return _native.effects(engines)
 
 
