@@ -127,6 +127,21 @@ def test_what_is_no_trials_json_is_refused(tmp_path, text):
         cruisefit.plot_trials(file)
 
 
+def test_a_path_may_have_parentheses(tmp_path):
+    """What is on one line is content where no file has its name."""
+    plan = "(seed: 1, aircraft: Preset(citation_x), tails: [(tail: \"T-1\", flights: Designed((flights: 1)))])"
+    file = tmp_path / "p(1).ron"
+    file.write_text(plan)
+    flown = cruisefit.simulate(plan).reports
+    assert cruisefit.simulate(str(file)).reports == flown == cruisefit.simulate(file).reports
+    (tmp_path / "plan (of one)").write_text(plan)
+    assert cruisefit.simulate(str(tmp_path / "plan (of one)")).reports == flown
+    with pytest.raises(FileNotFoundError):
+        cruisefit.simulate("p(2).ron")
+    with pytest.raises(cruisefit.InputError):
+        cruisefit.simulate(f"({'x' * 5000})")
+
+
 def test_threads_of_python_at_once(initial):
     points = pa.table({name: values * 1000 for name, values in POINTS.items()})
     expected = initial.predict(points)

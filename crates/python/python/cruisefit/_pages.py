@@ -13,7 +13,7 @@ from typing import Literal
 from . import _native
 from .errors import InputError, warn
 
-__all__ = ["Chart", "DiagnosisChart", "TailChart", "framed", "names_of", "read_text", "write_bytes"]
+__all__ = ["Chart", "DiagnosisChart", "TailChart", "framed", "is_content", "names_of", "read_text", "write_bytes"]
 
 
 TailChart = Literal[
@@ -77,6 +77,14 @@ def read_text(path: str | os.PathLike[str]) -> str:
     except UnicodeDecodeError as error:
         found = f"byte 0x{error.object[error.start]:02x}"
         raise InputError(f"found {found}, expected text in UTF-8", file=os.fspath(path)) from None
+
+
+def is_content(text: str) -> bool:
+    """Whether a text is the content of a file (RON) rather than its path, which may have parentheses too."""
+    if "(" not in text:
+        return False
+    # What is written on one line may be longer than the name of a file can be: `Path.exists` would raise.
+    return "\n" in text or (text.rstrip().endswith(")") and not os.path.exists(text))
 
 
 def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:

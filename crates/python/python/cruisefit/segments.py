@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _native
 from ._columnar import ENDINGS as _COLUMNAR_ENDINGS, opened, require_pyarrow
-from ._pages import read_text
+from ._pages import is_content, read_text
 from ._tables import Table, as_stream, is_table, like
 from .errors import InputError, expected, found_and_expected, in_python, warn_of_refused
 
@@ -357,10 +357,8 @@ def check(segments: Segments, models: Model | Sequence[Model] = ()) -> Check:
 def _mapping(mapping: str | os.PathLike[str]) -> str:
     """The text of a mapping file; a text and the name of a preset as they are."""
     text = os.fspath(mapping)
-    if "(" in text and ("\n" in text or text.rstrip().endswith(")")):
-        # What is written on one line may be longer than the name of a file can be.
-        if "\n" in text or len(text) > 255 or not Path(text).exists():
-            return text
+    if is_content(text):
+        return text
     path = Path(text)
     return read_text(path) if path.suffix or path.exists() else text
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-from pathlib import Path
 from typing import Any
 
 from . import _native
-from ._pages import read_text
+from ._pages import is_content, read_text
 
 __all__ = ["Simulation", "simulate"]
 
@@ -56,6 +55,7 @@ def simulate(plan: str | os.PathLike[str], *, threads: int | None = None) -> Sim
 
     Raises:
         InputError: A plan that is none, or a flight that cannot be flown.
+        FileNotFoundError: There is no such file.
     """
-    text = str(plan) if isinstance(plan, str) and "(" in plan else read_text(Path(plan))
+    text = plan if isinstance(plan, str) and is_content(plan) else read_text(plan)
     return Simulation(_native.simulate(text, threads))
