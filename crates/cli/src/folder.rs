@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::StoredTail;
-use pipeline::folder_state;
+use pipeline::folder_state::{self, FOLDERS};
 use pipeline::learnt_flights::{self, KnownFlight};
 
 use crate::failure::{Failure, show};
@@ -62,9 +62,6 @@ pub(crate) struct Folder {
     /// Files that what is staged makes out of date: gone when it is in its place.
     out_of_date: Vec<String>,
 }
-
-/// Folders of a tail's files, and of its page.
-const FOLDERS: [&str; 5] = ["models", "segments", "flights", "deviations", "pages"];
 
 /// Whether a path is that of a folder's state, or of a file of the kinds that a state names.
 pub(crate) fn is_of_a_state(path: &Path) -> bool {

@@ -15,6 +15,9 @@ use crate::summary::TailSummary;
 /// Name of the file.
 pub const NAME: &str = "STATE.ron";
 
+/// Folders of the files of tails that a state names, and of the pages of tails, beside the state.
+pub const FOLDERS: [&str; 5] = ["models", "segments", "flights", "deviations", "pages"];
+
 /// The format that this program writes.
 const FORMAT: u32 = 1;
 

@@ -27,6 +27,7 @@ mod columnar;
 mod diagnosed;
 mod failure;
 mod flights;
+mod inputs;
 mod model;
 mod plots;
 mod points;
@@ -52,6 +53,8 @@ mod _native {
     #[pymodule_export]
     use crate::flights::{Flights, Source};
     #[pymodule_export]
+    use crate::inputs::matches;
+    #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
     use crate::plots::{picture, plot_trials};
@@ -60,10 +63,13 @@ mod _native {
     #[pymodule_export]
     use crate::starting::{mapping_of_content, mapping_of_table, public_guide, public_types};
 
+    use pipeline::folder_state;
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("STATE_NAME", folder_state::NAME)?;
+        module.add("STATE_FOLDERS", folder_state::FOLDERS)?;
         module.add("PREDICTED_COLUMNS", perf_model::PREDICTED_COLUMNS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -40,6 +40,50 @@ def test_segments(run, fixture, tmp_path):
     assert cruisefit.Segments.from_state(segments.state()).to_csv() == segments.to_csv()
 
 
+ARGUMENTS = {
+    "g": "1.txt .2.txt .hidden/3.txt deep/4.RPT deep/er/5.txt linked/6.txt night/7.txt",
+    "g/**/*.txt": "1.txt .2.txt .hidden/3.txt deep/er/5.txt linked/6.txt night/7.txt night/segments/8.txt",
+    "g/*.txt": "1.txt .2.txt",
+    "g/*": "1.txt .2.txt .hidden/3.txt deep/4.RPT deep/er/5.txt linked/6.txt night/7.txt",
+    "g/*/er": "deep/er/5.txt",
+    "g/deep/loop": "deep/4.RPT deep/er/5.txt",
+    "g/night/segments": "night/segments/8.txt",
+}
+
+
+@pytest.mark.parametrize("argument", sorted(ARGUMENTS))
+def test_an_argument_stands_for_the_same_files(run, tmp_path, argument):
+    """Folders, patterns, hidden files, links, and a folder that `adapt` wrote, whose tables are no reports."""
+    from conftest import FIXTURES
+
+    reports = sorted((FIXTURES / "ghazi-2020" / "reports").rglob("*.txt"))
+    names = sorted({name for names in ARGUMENTS.values() for name in names.split()})
+    folder = tmp_path / "g"
+    for name, report in zip(names, reports):
+        file = folder / name if not name.startswith("linked") else tmp_path / "elsewhere" / "6.txt"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(report.read_bytes())
+    (folder / "deep" / "readme.md").write_text("none")
+    (folder / "night" / "STATE.ron").write_text("none")
+    (folder / "linked").symlink_to(tmp_path / "elsewhere")
+    if "*" not in argument:
+        (folder / "deep" / "loop").symlink_to(".")
+    segments = cruisefit.segment(tmp_path / argument)
+    paths = segments.flights.column("path").to_pylist()
+    expected = {f"g/{name}" for name in ARGUMENTS[argument].split()}
+    assert {path.removeprefix(f"{tmp_path}/").replace("/loop/", "/") for path in paths} == expected
+    run("segment", tmp_path / argument, "-o", tmp_path / "segments.csv")
+    assert segments.to_csv() == (tmp_path / "segments.csv").read_bytes()
+    assert cruisefit.segment([tmp_path / argument, str(tmp_path / argument)]).to_csv() == segments.to_csv()
+
+
+def test_a_pattern_that_is_none_is_refused(tmp_path):
+    with pytest.raises(cruisefit.InputError, match="Pattern syntax error"):
+        cruisefit.segment(tmp_path / "a[")
+    with pytest.raises(FileNotFoundError, match="matches no file"):
+        cruisefit.segment(tmp_path / "**" / "*.txt")
+
+
 @pytest.mark.parametrize("law", ["bayes", "paper"])
 def test_adapt(run, fixture, models, tmp_path, law):
     out = tmp_path / "out"

@@ -6,6 +6,8 @@ from typing import Any, Protocol
 
 __version__: str
 PREDICTED_COLUMNS: Sequence[str]
+STATE_NAME: str
+STATE_FOLDERS: Sequence[str]
 
 class ArrowStream(Protocol):
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
@@ -14,6 +16,7 @@ RefusedRow = tuple[str, int | None, int | None, str]
 Path = str | PathLike[str]
 Opened = Callable[[Any], Any]
 
+def matches(pattern: str) -> list[PathLike[str]]: ...
 def mapping_of_content(name: str, content: bytes | None, columnar: Opened) -> str: ...
 def mapping_of_table(name: str, table: ArrowStream) -> str: ...
 def public_types() -> list[tuple[str, str, list[str]]]: ...

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import glob
 import json
 import os
 from collections.abc import Iterable, Sequence
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _native
 from ._columnar import ENDINGS as _COLUMNAR_ENDINGS, opened, require_pyarrow
+from ._inputs import Inputs
 from ._pages import is_content, read_text
 from ._tables import Table, as_stream, is_table, like
 from .errors import InputError, expected, found_and_expected, in_python, warn_of_refused
@@ -204,7 +204,8 @@ def segment(
     """Finds the stabilised segments of reports or recordings; needs no model.
 
     Args:
-        reports: Paths (files; folders, searched for .txt, .rpt and .gz, with a mapping for recordings; globs), bytes, or pairs
+        reports: Paths (files; folders, searched with all below them for .txt, .rpt and .gz, with a mapping for recordings, but
+            not what ``adapt`` keeps there; patterns, ``**`` for folders of any depth), bytes, or pairs
             of name and bytes; one or several. Recordings are delimited text, plain or packed (.csv, .gz, .zst), Parquet
             (.parquet) and Arrow (.arrow, .arrows, .feather, .ipc); the last two need pyarrow. They are read piece by piece, so
             that they may be of any length. With a mapping also a table (Arrow C interface) whose rows are samples and whose
@@ -227,25 +228,27 @@ def segment(
     reading = _native.Source(criteria, None if mapping is None else _mapping(mapping))
     if is_table(reports):
         return _looked_through(reading.rows(name, as_stream(reports), threads))
-    paths, contents, other_files = _found(reports, _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
+    inputs, contents = _found(reports, _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
+    paths = sorted(inputs.files)
     require_pyarrow([*((str(path), path) for path in paths), *contents])
-    read = reading.files(paths, other_files, opened, threads)
+    read = reading.files(paths, inputs.skipped, opened, threads)
     if contents:
         read = read.and_([reading.contents(contents, opened, threads)])
+    if inputs.refused:
+        read = read.with_refused([*inputs.refused, *read.refused_as_read()])
     return _looked_through(read)
 
 
-def _found(reports: Any, endings: tuple[str, ...]) -> tuple[list[Path], list[tuple[str, bytes]], int]:
-    """The files that were named, in order, each once, what is in memory with its names, and how many other files were skipped.
+def _found(reports: Any, endings: tuple[str, ...]) -> tuple[Inputs, list[tuple[str, bytes]]]:
+    """The files that were named, and what is in memory with its names.
 
     Raises:
         InputError: There is neither.
         TypeError: Something that is no report.
     """
-    paths: set[Path] = set()
+    inputs = Inputs(endings)
     contents: list[tuple[str, bytes]] = []
     searched: list[Path] = []
-    skipped = 0
     for one in _several(reports):
         if isinstance(one, _BINARY):
             contents.append((f"report {len(contents) + 1}", bytes(one)))
@@ -254,20 +257,19 @@ def _found(reports: Any, endings: tuple[str, ...]) -> tuple[list[Path], list[tup
             contents.append((name, bytes(content) if isinstance(content, _BINARY) else content))
         elif isinstance(one, (str, os.PathLike)):
             searched.append(Path(one))
-            found, others = _files(Path(one), endings)
-            paths.update(found)
-            skipped += others
+            inputs.add(Path(one))
         else:
             collect = "; collect() it first" if hasattr(one, "collect") else ""
             one_by_one = "; a table is read by itself, and Segments are added up" if is_table(one) else ""
             raise TypeError(
                 f"found {type(one).__name__}, expected a path, bytes, or a name and bytes{collect}{one_by_one}"
             )
-    if not paths and not contents:
+    if not inputs.files and not contents:
         where = f" in {', '.join(map(str, searched))}" if searched else ""
-        others_skipped = f"; files skipped for their endings: {skipped}" if skipped else ""
-        raise InputError(f"found no cruise report{where}, expected one or more{others_skipped}")
-    return sorted(paths), contents, skipped
+        skipped = f"; files skipped for their endings: {inputs.skipped}" if inputs.skipped else ""
+        unlisted = "".join(f"; {path}: {reason}" for path, _, _, reason in inputs.refused)
+        raise InputError(f"found no cruise report{where}, expected one or more{skipped}{unlisted}")
+    return inputs, contents
 
 
 def _several(reports: Any) -> Iterable[Any]:
@@ -361,20 +363,3 @@ def _mapping(mapping: str | os.PathLike[str]) -> str:
         return text
     path = Path(text)
     return read_text(path) if path.suffix or path.exists() else text
-
-
-def _files(path: Path, endings: tuple[str, ...]) -> tuple[list[Path], int]:
-    """The files that a path stands for, and how many others of its folders were skipped."""
-    if path.is_dir():
-        files = [file for file in path.rglob("*") if file.is_file()]
-        known = [file for file in files if file.suffix.lower() in endings]
-        return known, len(files) - len(known)
-    if path.exists():
-        return [path], 0
-    if not any(character in str(path) for character in "*?["):
-        raise FileNotFoundError(f"{path}: no such file or folder")
-    matches = [Path(match) for match in glob.glob(str(path))]
-    if not matches:
-        raise FileNotFoundError(f"{path}: the pattern matches no file")
-    found = [_files(match, endings) for match in matches]
-    return [file for files, _ in found for file in files], sum(others for _, others in found)
