@@ -164,14 +164,3 @@ fn events_of(path: &Path) -> Result<Vec<Event>, Failure> {
     let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
     read_events(&bytes).map_err(|error| Failure::bad_file(path, error))
 }
-
-/// Names tails that have events and of which no flight is at hand.
-fn warn_of_events(events: &[Event], is_known: impl Fn(&str) -> bool) {
-    let mut warned: Vec<&str> = Vec::new();
-    for event in events {
-        if !is_known(&event.tail) && !warned.contains(&event.tail.as_str()) {
-            warned.push(&event.tail);
-            tracing::warn!(tail = event.tail, "has events, but no flight");
-        }
-    }
-}

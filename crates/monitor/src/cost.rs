@@ -11,6 +11,41 @@ pub struct CostFactors {
     pub flights_per_year: Option<f64>,
 }
 
+/// A factor of an operator's that is none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{quantity}: found {value}, expected {expected}")]
+pub struct FactorError {
+    /// Which factor, in words.
+    pub quantity: &'static str,
+    /// The value given.
+    pub value: f64,
+    /// What a value of it is.
+    pub expected: &'static str,
+}
+
+impl CostFactors {
+    /// The same factors, each of which may be multiplied by.
+    ///
+    /// # Errors
+    /// [`FactorError`] for one that is not a finite number above 0: costs would be negative, or no number.
+    pub fn checked(self) -> Result<Self, FactorError> {
+        let expected = "a finite number above 0";
+        for (quantity, value) in [
+            ("kg of CO₂ from a kg of fuel", self.co2_kg_per_kg),
+            ("price of a kg of fuel", self.price_per_kg),
+            ("flights a year", self.flights_per_year),
+        ] {
+            match value {
+                Some(value) if !(value > 0.0 && value.is_finite()) => {
+                    return Err(FactorError { quantity, value, expected });
+                }
+                _ => {}
+            }
+        }
+        Ok(self)
+    }
+}
+
 /// What a deviation costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
@@ -58,6 +93,31 @@ impl Cost {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_factor_is_finite_and_above_0() {
+        let all = |value| CostFactors {
+            co2_kg_per_kg: value,
+            price_per_kg: value,
+            flights_per_year: value,
+        };
+        for fine in [None, Some(f64::MIN_POSITIVE), Some(3.16)] {
+            assert_eq!(all(fine).checked(), Ok(all(fine)));
+        }
+        for value in [-5.0, 0.0, f64::INFINITY, f64::NAN] {
+            let bad = Some(value);
+            for (factors, quantity) in [
+                (CostFactors { co2_kg_per_kg: bad, ..all(None) }, "kg of CO₂ from a kg of fuel"),
+                (CostFactors { price_per_kg: bad, ..all(None) }, "price of a kg of fuel"),
+                (CostFactors { flights_per_year: bad, ..all(None) }, "flights a year"),
+            ] {
+                let refused = factors.checked().unwrap_err().to_string();
+                let expected =
+                    format!("{quantity}: found {value}, expected a finite number above 0");
+                assert_eq!(refused, expected);
+            }
+        }
+    }
 
     /// By hand: 5050 kg burnt where 5000 were predicted.
     #[test]

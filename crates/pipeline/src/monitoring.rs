@@ -23,9 +23,9 @@ pub use document::{
     FlightDocument, MonitorDocument, MonthDocument, SCHEMA, StepInGapDocument, TailDocument,
     TypeConditions,
 };
-pub use events::{Event, EventsError, instant, read_events};
+pub use events::{Event, EventsError, instant, read_events, warn_of_events};
 pub use flights::{MeanConditions, MonitoredFlight, curve_of_flights, flights_of};
 pub use flights_table::{flights_to_csv, read_flights};
 pub use tables::{FLIGHTS, NamedTable, flights_by_tail, tables, tables_but_flights};
-pub use tail::{MonitorOptions, MonitoredTail};
+pub use tail::{MonitorOptions, Monitored, MonitoredTail, monitor_tail};
 pub use text::{Rows, text};

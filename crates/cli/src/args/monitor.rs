@@ -37,13 +37,13 @@ pub(crate) struct MonitorArgs {
     #[arg(long, value_name = "DIAGNOSIS")]
     pub(crate) diagnosis: Option<PathBuf>,
     /// kg of CO₂ from a kg of fuel, to print CO₂ a year
-    #[arg(long, value_name = "KG", value_parser = positive)]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     pub(crate) co2_factor: Option<f64>,
     /// Price of a kg of fuel in any currency, to print the price a year
-    #[arg(long, value_name = "PRICE", value_parser = positive)]
+    #[arg(long, value_name = "PRICE", allow_negative_numbers = true)]
     pub(crate) fuel_price: Option<f64>,
     /// Flights a year [default: as many as were recorded]
-    #[arg(long, value_name = "N", value_parser = positive)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) flights_per_year: Option<f64>,
     /// Basic factor of the flight management system, %: adds the PERF FACTOR, basic plus that of the present level
     #[arg(long, value_name = "PCT", allow_negative_numbers = true)]
@@ -58,11 +58,4 @@ fn date(text: &str) -> Result<flight::Timestamp, String> {
     pipeline::monitoring::instant(text).ok_or_else(|| {
         "expected a date like 2026-03-02, or an instant like 2026-03-02T10:00:00Z".to_owned()
     })
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a number above 0".to_owned()),
-    }
 }

@@ -13,9 +13,7 @@ use rayon::prelude::*;
 
 use self::apply::Outside;
 use crate::args::DiagnoseArgs;
-use crate::commands::{
-    Outcome, check_refused, events_of, read_reports, tell_serious, warn_of_events,
-};
+use crate::commands::{Outcome, check_refused, events_of, read_reports, tell_serious};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
@@ -29,6 +27,7 @@ use pipeline::diagnosis_groups::{Group, NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::distinct::distinct;
 use pipeline::gaps_table;
+use pipeline::monitoring::warn_of_events;
 use pipeline::plausibility::{self, Absurd, Book};
 use pipeline::reading::Checks;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted, other_files_words};

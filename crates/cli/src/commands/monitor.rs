@@ -8,16 +8,15 @@ use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
 use monitor::cost::CostFactors;
-use monitor::{FlownConditions, SeriesError};
 use pipeline::monitoring::{
-    AlertDocument, BeforeLearning, Event, FLIGHTS, MonitorDocument, MonitorOptions, MonitoredTail,
-    Rows, TailDeviations, TailDocument, flights_by_tail, tables_but_flights, text,
+    BeforeLearning, Event, FLIGHTS, MonitorDocument, MonitorOptions, Monitored, Rows,
+    flights_by_tail, monitor_tail, tables_but_flights, text, warn_of_events,
 };
 use rayon::prelude::*;
 
 use crate::args::MonitorArgs;
 use crate::columns;
-use crate::commands::{Ending, Outcome, check_refused, events_of, warn_of_events};
+use crate::commands::{Ending, Outcome, check_refused, events_of};
 use crate::failure::{Failure, RefusedReport, refused_of, show};
 use crate::files::{make_folder, write_atomically, write_streamed};
 use crate::progress::Progress;
@@ -42,6 +41,10 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
         before_learning: BeforeLearning::left_out(arguments.quick),
         since: arguments.since,
     };
+    let options = options.checked().map_err(|error| Failure::BadArgument {
+        argument: error.quantity,
+        reason: format!("found {}, expected {}", error.value, error.expected),
+    })?;
     let events = match &arguments.events {
         Some(path) => events_of(path)?,
         None => Vec::new(),
@@ -115,19 +118,17 @@ fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Resul
     })
 }
 
-type Found = (TailDocument, FlownConditions, Vec<AlertDocument>);
-
 /// Every tail that has something to monitor, and those that are damaged: a tail costs itself, not the fleet.
 fn monitor_all(
     tails: &Tails,
     events: &[Event],
     options: &MonitorOptions,
     progress: Progress,
-) -> Result<(Vec<Found>, Vec<RefusedReport>), Failure> {
+) -> Result<(Vec<Monitored>, Vec<RefusedReport>), Failure> {
     let places = tails.places()?;
     let bar = progress.bar(places.len(), "reading tails");
     // One tail at a time on each thread: memory does not grow with the fleet's segments.
-    let read: Vec<Result<Option<Found>, RefusedReport>> = places
+    let read: Vec<Result<Option<Monitored>, RefusedReport>> = places
         .par_iter()
         .map(|place| {
             let found = tails.deviations(place, options).and_then(|(tail, deviations)| {
@@ -149,21 +150,4 @@ fn monitor_all(
         }
     }
     Ok((found, refused))
-}
-
-fn monitor_tail(
-    tail: &str,
-    deviations: &TailDeviations,
-    events: &[Event],
-    options: &MonitorOptions,
-) -> Result<Option<Found>, SeriesError> {
-    let Some(found) = MonitoredTail::new(tail, deviations, events)? else {
-        tracing::warn!(
-            tail,
-            "no segment is inside the table{}: there is nothing to monitor",
-            options.since.map_or_else(String::new, |since| format!(" since {since}"))
-        );
-        return Ok(None);
-    };
-    Ok(Some((found.document(options), found.flown_conditions(), found.alerts(options))))
 }

@@ -276,6 +276,28 @@ fn months_and_costs_are_printed_as_asked_for() {
     assert!(cost["price_per_year"].is_null());
 }
 
+#[test]
+fn factors_that_are_no_factors_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    for (option, quantity) in [
+        ("--co2-factor", "kg of CO₂ from a kg of fuel"),
+        ("--fuel-price", "price of a kg of fuel"),
+        ("--flights-per-year", "flights a year"),
+    ] {
+        for value in ["-5", "0", "NaN", "inf"] {
+            let refused = monitor(&adapted, &[option, value]).expect(2).stderr;
+            let said = format!("{quantity}: found {value}, expected a finite number above 0");
+            assert!(refused.contains(&said), "{refused}");
+        }
+    }
+    for value in ["NaN", "-inf"] {
+        let option = format!("--basic-perf-factor={value}");
+        let refused = monitor(&adapted, &[&option]).expect(2).stderr;
+        assert!(refused.contains(&format!("found {value}, expected a finite number")), "{refused}");
+    }
+}
+
 /// What `adapt` kept of each flight says what its segments say: a folder of a program that kept nothing gives the same documents.
 #[test]
 fn what_is_kept_of_flights_says_what_their_segments_say() {

@@ -92,6 +92,17 @@ fn engines_named(text: &str) -> Vec<usize> {
     named
 }
 
+/// Names tails that have events and of which no flight is at hand: a name that is spelt otherwise would be measured nowhere.
+pub fn warn_of_events(events: &[Event], is_known: impl Fn(&str) -> bool) {
+    let mut warned: Vec<&str> = Vec::new();
+    for event in events {
+        if !is_known(&event.tail) && !warned.contains(&event.tail.as_str()) {
+            warned.push(&event.tail);
+            tracing::warn!(tail = event.tail, "has events, but no flight");
+        }
+    }
+}
+
 /// An instant as RFC 3339 text.
 mod instant_text {
     use flight::Timestamp;

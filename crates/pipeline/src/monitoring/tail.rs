@@ -6,7 +6,7 @@ use core::ops::Range;
 
 use flight::Timestamp;
 use monitor::airbus;
-use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
+use monitor::cost::{Cost, CostFactors, FactorError, excess_fuel_kg};
 use monitor::{
     AlertRule, Bearing, CONDITIONS, Change, ChangeBeliefs, Estimate, FlightDeviation,
     FlownConditions, FlownFlight, History, KnownSteps, Month, Noise, Series, SeriesError, months,
@@ -15,8 +15,8 @@ use monitor::{
 
 use super::deviations::{BeforeLearning, TailDeviations};
 use super::document::{
-    AirbusTerms, ChangeDocument, CostDocument, EventDocument, Figure, FlightDocument,
-    MonthDocument, StepInGapDocument, TailDocument,
+    AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure,
+    FlightDocument, MonthDocument, StepInGapDocument, TailDocument,
 };
 use super::events::Event;
 use super::flights::{MeanConditions, MonitoredFlight};
@@ -39,6 +39,22 @@ pub struct MonitorOptions {
 }
 
 impl MonitorOptions {
+    /// The same options, whose factors can be computed with.
+    ///
+    /// # Errors
+    /// [`FactorError`] for a factor that [`CostFactors::checked`] refuses, and for a basic factor that is no finite number.
+    pub fn checked(self) -> Result<Self, FactorError> {
+        self.cost.checked()?;
+        match self.basic_performance_factor_percent {
+            Some(value) if !value.is_finite() => Err(FactorError {
+                quantity: "basic factor of the flight management system",
+                value,
+                expected: "a finite number of per cent",
+            }),
+            _ => Ok(self),
+        }
+    }
+
     /// What a run was asked for in words, for the head of its page.
     #[must_use]
     pub fn in_words(&self, events: usize) -> Vec<String> {
@@ -65,6 +81,30 @@ impl MonitorOptions {
         }
         told
     }
+}
+
+/// What a tail shows: its document, its flights by the conditions flown, and the rules that fired.
+pub type Monitored = (TailDocument, FlownConditions, Vec<AlertDocument>);
+
+/// Monitors a tail; `None`, with a warning, where no segment is inside the table.
+///
+/// # Errors
+/// As for [`MonitoredTail::new`].
+pub fn monitor_tail(
+    tail: &str,
+    deviations: &TailDeviations,
+    events: &[Event],
+    options: &MonitorOptions,
+) -> Result<Option<Monitored>, SeriesError> {
+    let Some(found) = MonitoredTail::new(tail, deviations, events)? else {
+        tracing::warn!(
+            tail,
+            "no segment is inside the table{}: there is nothing to monitor",
+            options.since.map_or_else(String::new, |since| format!(" since {since}"))
+        );
+        return Ok(None);
+    };
+    Ok(Some((found.document(options), found.flown_conditions(), found.alerts(options))))
 }
 
 /// A tail with its series read.
