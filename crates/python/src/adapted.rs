@@ -1,9 +1,11 @@
 //! What tails learn from flights, and how far a model is off on them.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use pipeline::adaptation::{self, StoredTail};
+use pipeline::columns::Columns;
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::file_names::{file_stem_of_tail, link_to, page_file_of_tail};
@@ -57,9 +59,9 @@ impl Tail {
         StoredTail { model, segments, flights: self.flights, curve, predicted: None }
     }
 
-    fn segments_csv(&self) -> Vec<u8> {
+    fn segments(&self) -> Columns {
         let engines = self.result.model.initial.aircraft().engines();
-        segments_table::table(&self.result.rows, engines).to_csv()
+        segments_table::table(&self.result.rows, engines)
     }
 }
 
@@ -106,20 +108,23 @@ impl Adapted {
     }
 
     /// A tail's segments with what its initial (or given) table says of them.
-    fn segments(&self, tail: &str) -> PyResult<PyTable> {
-        let result = &self.tail(tail)?.result;
-        let engines = result.model.initial.aircraft().engines();
-        python_table(&segments_table::table(&result.rows, engines))
+    fn segments(&self, py: Python<'_>, tail: String) -> PyResult<PyTable> {
+        let adapted = self.clone();
+        python_table(py, move || Ok(adapted.tail(&tail)?.segments()))
     }
 
     /// The same as the text of `segments/TAIL.csv`.
-    fn segments_csv(&self, tail: &str) -> PyResult<Vec<u8>> {
-        Ok(self.tail(tail)?.segments_csv())
+    fn segments_csv(&self, py: Python<'_>, tail: String) -> PyResult<Vec<u8>> {
+        let adapted = self.clone();
+        run(py, NonZeroUsize::new(1), move |_| Ok(adapted.tail(&tail)?.segments().to_csv()))
     }
 
     /// The text of `flights/TAIL.csv`.
-    fn flights_csv(&self, tail: &str) -> PyResult<Vec<u8>> {
-        Ok(learnt_flights::to_csv(&self.tail(tail)?.flights))
+    fn flights_csv(&self, py: Python<'_>, tail: String) -> PyResult<Vec<u8>> {
+        let adapted = self.clone();
+        run(py, NonZeroUsize::new(1), move |_| {
+            Ok(learnt_flights::to_csv(&adapted.tail(&tail)?.flights))
+        })
     }
 
     /// SHA-256 of what the tail was begun with.
@@ -147,16 +152,19 @@ impl Adapted {
         &self.findings
     }
 
-    /// `report.html` with the charts of all tails.
-    fn page(&self, title: &str) -> String {
-        let results: Vec<TailResult> = self.tails.iter().map(|tail| tail.result.clone()).collect();
-        page::report(&self.summary, &results, title)
+    /// `report.html`: with the charts of all tails, or of a large fleet with links to a page per tail.
+    fn page(&self, py: Python<'_>, title: String) -> PyResult<String> {
+        let adapted = self.clone();
+        run(py, None, move |_| Ok(adapted.report(&adapted.sections(), &title)))
     }
 
     /// Charts of a tail as SVG, of these names or all.
-    fn plot(&self, tail: &str, charts: Vec<String>) -> PyResult<String> {
-        let charts = chosen(&charts, &page::TAIL_CHARTS)?;
-        Ok(drawn(page::plot(&self.tail(tail)?.result, &charts))?)
+    fn plot(&self, py: Python<'_>, tail: String, charts: Vec<String>) -> PyResult<String> {
+        let adapted = self.clone();
+        run(py, None, move |_| {
+            let charts = chosen(&charts, &page::TAIL_CHARTS)?;
+            drawn(page::plot(&adapted.tail(&tail)?.result, &charts))
+        })
     }
 
     /// Path below the folder and bytes of every file that `cruisefit adapt` writes into a new folder.
@@ -298,32 +306,42 @@ impl Adapted {
         Ok(files)
     }
 
-    /// One page with the charts of all tails, or of a large fleet a page per tail.
-    fn pages(&self, title: &str) -> Vec<(String, Vec<u8>)> {
-        const REPORT: &str = "report.html";
+    /// A section of a page per tail.
+    fn sections(&self) -> Vec<page::Section> {
         let names = self.tails.iter().map(|tail| tail.result.tail.as_str());
         let anchors = page::Anchors::new(names);
-        let sections: Vec<page::Section> = self
-            .tails
+        self.tails
             .par_iter()
             .map(|tail| page::section(&tail.result, tail.costs.as_ref(), &anchors))
-            .collect();
-        if self.tails.len() <= page::TAILS_ON_ONE_PAGE {
+            .collect()
+    }
+
+    fn is_on_one_page(&self) -> bool {
+        self.tails.len() <= page::TAILS_ON_ONE_PAGE
+    }
+
+    /// One page with the charts of all tails, or of a large fleet with links to a page per tail.
+    fn report(&self, sections: &[page::Section], title: &str) -> String {
+        if self.is_on_one_page() {
             let sections: Vec<&page::Section> = sections.iter().collect();
-            let report = page::report_of_sections(&self.summary, &sections, title);
-            return vec![(REPORT.to_owned(), report.into_bytes())];
+            return page::report_of_sections(&self.summary, &sections, title);
         }
-        let page_of = page_file_of_tail;
         let links = sections
             .iter()
-            .map(|section| (section.tail.as_str(), link_to(&page_of(&section.tail))));
-        let report = page::fleet_report(&self.summary, &links.collect(), title);
-        let mut pages = vec![(REPORT.to_owned(), report.into_bytes())];
-        pages.extend(
-            sections
-                .iter()
-                .map(|section| (page_of(&section.tail), page::tail_page(section).into_bytes())),
-        );
+            .map(|section| (section.tail.as_str(), link_to(&page_file_of_tail(&section.tail))));
+        page::fleet_report(&self.summary, &links.collect(), title)
+    }
+
+    /// That page and, of a large fleet, a page per tail.
+    fn pages(&self, title: &str) -> Vec<(String, Vec<u8>)> {
+        let sections = self.sections();
+        let report = self.report(&sections, title);
+        let mut pages = vec![("report.html".to_owned(), report.into_bytes())];
+        if !self.is_on_one_page() {
+            pages.extend(sections.iter().map(|section| {
+                (page_file_of_tail(&section.tail), page::tail_page(section).into_bytes())
+            }));
+        }
         pages
     }
 }
@@ -335,7 +353,7 @@ fn files_of_tail(tail: &Tail) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let deviations = flights_of(&tail.result);
     Ok(vec![
         (format!("models/{stem}.ron"), model.into_bytes()),
-        (format!("segments/{stem}.csv"), tail.segments_csv()),
+        (format!("segments/{stem}.csv"), tail.segments().to_csv()),
         (format!("flights/{stem}.csv"), learnt_flights::to_csv(&tail.flights)),
         (format!("deviations/{stem}.csv"), flights_to_csv(&deviations)),
     ])

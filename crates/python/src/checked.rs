@@ -4,11 +4,12 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use arrow_array::RecordBatch;
 use monitor::FlownConditions;
 use monitor::cost::CostFactors;
 use pipeline::monitoring::{
     AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail,
-    TailDeviations, TailDocument, read_events, tables,
+    NamedTable, TailDeviations, TailDocument, read_events, tables,
 };
 use pipeline::plausibility;
 use pyo3::prelude::*;
@@ -18,9 +19,10 @@ use rayon::prelude::*;
 
 use crate::adapted::{Adapted, Tail};
 use crate::failure::Failure;
-use crate::flights::{Flights, python_table};
+use crate::flights::{Flights, table_of_batch};
 use crate::model::{Model, models_of};
 use crate::plots::drawn;
+use crate::tables::to_batch;
 use crate::work::{run, threads_in};
 
 /// JSON and text of `cruisefit check`.
@@ -138,8 +140,9 @@ fn monitor_tail(
 #[pymethods]
 impl Monitored {
     /// `monitor.json`.
-    fn json(&self) -> Vec<u8> {
-        self.document.to_json()
+    fn json(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        let document = Arc::clone(&self.document);
+        run(py, NonZeroUsize::new(1), move |_| Ok(document.to_json()))
     }
 
     /// Numbers of tails, flights and changes.
@@ -150,23 +153,31 @@ impl Monitored {
     }
 
     /// `monitor.html`.
-    fn page(&self) -> String {
-        page::monitoring(&self.document, &self.options)
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let (document, options) = (Arc::clone(&self.document), Arc::clone(&self.options));
+        run(py, None, move |_| Ok(page::monitoring(&document, &options)))
     }
 
     /// Deviations over time of these tails as SVG; of all without any.
-    fn plot(&self, tails: Vec<String>) -> PyResult<String> {
-        let mut documents = self.document.tails.clone();
-        documents.retain(|one| tails.is_empty() || tails.contains(&one.tail));
-        Ok(drawn(page::plot_months(&documents))?)
+    fn plot(&self, py: Python<'_>, tails: Vec<String>) -> PyResult<String> {
+        let document = Arc::clone(&self.document);
+        run(py, None, move |_| {
+            let mut documents = document.tails.clone();
+            documents.retain(|one| tails.is_empty() || tails.contains(&one.tail));
+            drawn(page::plot_months(&documents))
+        })
     }
 
     /// The tables of `cruisefit monitor`, by the names of their files.
-    fn tables(&self) -> PyResult<Vec<(String, PyTable)>> {
-        tables(&self.document)
-            .into_iter()
-            .map(|table| Ok((table.name.to_string(), python_table(&table.columns)?)))
-            .collect()
+    fn tables(&self, py: Python<'_>) -> PyResult<Vec<(String, PyTable)>> {
+        let document = Arc::clone(&self.document);
+        let batches = run(py, None, move |_| {
+            let batch = |table: NamedTable| Ok((table.name, to_batch(&table.columns)?));
+            tables(&document).into_par_iter().map(batch).collect::<Result<Vec<_>, Failure>>()
+        })?;
+        let python =
+            |(name, batch): (&str, RecordBatch)| Ok((name.to_owned(), table_of_batch(batch)?));
+        batches.into_iter().map(python).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Diagnoses: where models differ from flights and which effect they lack.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use ::diagnose::Options;
@@ -33,7 +34,7 @@ pub(crate) struct Diagnosed {
     figures: Arc<Vec<DiagnosisFigures>>,
     fleets: Arc<Vec<DiagnosedFleet>>,
     reports: Arc<ReportsSummary>,
-    asked: RunOptions,
+    asked: Arc<RunOptions>,
     criteria: String,
     /// Serious findings in the data, in words.
     findings: String,
@@ -116,7 +117,7 @@ pub(crate) fn diagnose(
             figures: Arc::new(figures),
             fleets: Arc::new(fleets),
             reports: Arc::new(reports),
-            asked,
+            asked: Arc::new(asked),
             criteria: flights.criteria.clone(),
             findings,
         })
@@ -148,29 +149,38 @@ pub(crate) fn effects(engines: i128) -> PyResult<Vec<(String, String, String)>> 
 #[pymethods]
 impl Diagnosed {
     /// `diagnosis.json`.
-    fn json(&self) -> PyResult<String> {
-        let document = DiagnosisDocument::new(&self.asked, &self.reports, &self.diagnoses)
-            .with_fleets(&self.fleets);
-        Ok(document.to_json().map_err(Failure::internal)?)
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        let found = self.clone();
+        run(py, NonZeroUsize::new(1), move |_| {
+            let document = DiagnosisDocument::new(&found.asked, &found.reports, &found.diagnoses);
+            document.with_fleets(&found.fleets).to_json().map_err(Failure::internal)
+        })
     }
 
     /// `diagnosis.html`.
-    fn page(&self) -> String {
-        let words = self.asked.in_words(&self.criteria);
-        let fleets: Vec<FleetRecord> = self.fleets.iter().map(FleetRecord::from).collect();
-        page::diagnosis(&self.reports, &self.diagnoses, &self.figures, &fleets, &words)
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let found = self.clone();
+        run(py, None, move |_| {
+            let words = found.asked.in_words(&found.criteria);
+            let fleets: Vec<FleetRecord> = found.fleets.iter().map(FleetRecord::from).collect();
+            let (diagnoses, figures) = (&found.diagnoses, &found.figures);
+            Ok(page::diagnosis(&found.reports, diagnoses, figures, &fleets, &words))
+        })
     }
 
     /// Charts of these tails' diagnoses as SVG, of these names or all; of all tails without any.
-    fn plot(&self, tails: Vec<String>, charts: Vec<String>) -> PyResult<String> {
-        let charts = chosen(&charts, &page::DIAGNOSIS_CHARTS)?;
-        // As the command has them, which reads them from its table: to as many digits.
-        let table = gaps_table::table(&self.diagnoses, &self.figures).to_csv();
-        let gaps = gaps_table::read(&table).map_err(Failure::internal)?;
-        let asked = |one: &&DiagnosedTail| tails.is_empty() || tails.contains(&one.tail);
-        let diagnoses: Vec<TailDiagnosis> =
-            self.diagnoses.iter().filter(asked).map(TailDiagnosis::from).collect();
-        Ok(drawn(page::plot_diagnoses(&diagnoses, &gaps, &charts))?)
+    fn plot(&self, py: Python<'_>, tails: Vec<String>, charts: Vec<String>) -> PyResult<String> {
+        let found = self.clone();
+        run(py, None, move |_| {
+            let charts = chosen(&charts, &page::DIAGNOSIS_CHARTS)?;
+            // As the command has them, which reads them from its table: to as many digits.
+            let table = gaps_table::table(&found.diagnoses, &found.figures).to_csv();
+            let gaps = gaps_table::read(&table).map_err(Failure::internal)?;
+            let asked = |one: &&DiagnosedTail| tails.is_empty() || tails.contains(&one.tail);
+            let diagnoses: Vec<TailDiagnosis> =
+                found.diagnoses.iter().filter(asked).map(TailDiagnosis::from).collect();
+            drawn(page::plot_diagnoses(&diagnoses, &gaps, &charts))
+        })
     }
 
     /// The lines that the command line prints, tail by tail.

@@ -221,9 +221,16 @@ pub(crate) fn batches_of(table: AnyRecordBatch) -> PyResult<Vec<RecordBatch>> {
     Ok(batches)
 }
 
-/// Columns as a table that Python can take.
-pub(crate) fn python_table(columns: &Columns) -> PyResult<PyTable> {
-    let batch = to_batch(columns)?;
+/// Columns, made as any other work of a call is, as a table that Python can take.
+pub(crate) fn python_table(
+    py: Python<'_>,
+    columns: impl FnOnce() -> Result<Columns, Failure> + Send + 'static,
+) -> PyResult<PyTable> {
+    table_of_batch(run(py, NonZeroUsize::new(1), move |_| to_batch(&columns()?))?)
+}
+
+/// A batch as a table that Python can take.
+pub(crate) fn table_of_batch(batch: RecordBatch) -> PyResult<PyTable> {
     let schema = batch.schema();
     PyTable::try_new(vec![batch], schema)
 }
@@ -300,23 +307,27 @@ impl Flights {
     }
 
     /// The table of segments, in the order of flying.
-    fn segments(&self) -> PyResult<PyTable> {
-        python_table(&self.segments_columns())
+    fn segments(&self, py: Python<'_>) -> PyResult<PyTable> {
+        let flights = self.compared(py).clone();
+        python_table(py, move || Ok(flights.segments_columns()))
     }
 
     /// The table of segments as `segment` writes it.
-    fn segments_csv(&self) -> Vec<u8> {
-        self.segments_columns().to_csv()
+    fn segments_csv(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
+        let flights = self.compared(py).clone();
+        run(py, NonZeroUsize::new(1), move |_| Ok(flights.segments_columns().to_csv()))
     }
 
     /// One row per flight, each once, without its segments.
-    fn table(&self) -> PyResult<PyTable> {
-        python_table(&flights_table::table(&self.distinct().flights))
+    fn table(&self, py: Python<'_>) -> PyResult<PyTable> {
+        let flights = self.compared(py).clone();
+        python_table(py, move || Ok(flights_table::table(&flights.distinct().flights)))
     }
 
     /// One row per flight as read, with its segments: all that `from_state` needs.
-    fn state(&self) -> PyResult<PyTable> {
-        python_table(&flights_table::table_with_segments(&self.reading.flights))
+    fn state(&self, py: Python<'_>) -> PyResult<PyTable> {
+        let reading = Arc::clone(&self.reading);
+        python_table(py, move || Ok(flights_table::table_with_segments(&reading.flights)))
     }
 
     /// What was refused: reports that cannot be read, and flights that contradict another one.
@@ -365,6 +376,13 @@ impl Flights {
     /// Each flight once; what contradicts another one is refused.
     pub(crate) fn distinct(&self) -> &Reading {
         self.distinct.get_or_init(|| distinct(self.reading.as_ref().clone()))
+    }
+
+    /// The same flights, compared with each other without the interpreter's lock. What that warns of was raised where they were read
+    /// ([`Self::look_through`]): here it would be raised again of a selection.
+    fn compared(&self, py: Python<'_>) -> &Self {
+        py.detach(|| self.distinct());
+        self
     }
 
     fn segments_columns(&self) -> Columns {

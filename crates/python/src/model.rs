@@ -111,8 +111,7 @@ impl Model {
     }
 
     /// Charts of the model as SVG, of these names or all.
-    fn plot(&self, charts: Vec<String>) -> PyResult<String> {
-        let charts = chosen(&charts, &page::TAIL_CHARTS)?;
+    fn plot(&self, py: Python<'_>, charts: Vec<String>) -> PyResult<String> {
         let file = self.file.as_ref().clone();
         let tail = file.tail().unwrap_or_else(|| file.initial.aircraft().name()).to_owned();
         let data = TailData {
@@ -123,17 +122,22 @@ impl Model {
             notes: Vec::new(),
             curve: None,
         };
-        Ok(drawn(page::plot(&TailResult::as_given(data, Predicts::WholeModel), &charts))?)
+        run(py, None, move |_| {
+            let charts = chosen(&charts, &page::TAIL_CHARTS)?;
+            drawn(page::plot(&TailResult::as_given(data, Predicts::WholeModel), &charts))
+        })
     }
 
     /// One row per node of the drag table.
-    fn table(&self) -> PyResult<PyTable> {
-        python_table(&model_table::table(&self.file))
+    fn table(&self, py: Python<'_>) -> PyResult<PyTable> {
+        let file = Arc::clone(&self.file);
+        python_table(py, move || Ok(model_table::table(&file)))
     }
 
     /// The six-coefficient polynomial nearest to the drag table, with its covariance where the law provides one.
-    fn polynomial(&self) -> PyResult<PyTable> {
-        python_table(&model_table::polynomial(&self.file).map_err(Failure::input)?)
+    fn polynomial(&self, py: Python<'_>) -> PyResult<PyTable> {
+        let file = Arc::clone(&self.file);
+        python_table(py, move || model_table::polynomial(&file).map_err(Failure::input))
     }
 
     #[getter]

@@ -92,6 +92,9 @@ def test_adapt(run, fixture, models, tmp_path, law):
     adapted = model.adapt(cruisefit.segment(fixture / "reports"), law=law)
     adapted.write(tmp_path / "here")
     assert_same_folder(tmp_path / "here", out)
+    # With what the trim criteria cost, which is known of the flights of this call alone.
+    assert adapted.page() == (out / "report.html").read_text()
+    assert "trim criteria" in adapted.page()
     again = cruisefit.Adaptation.read(tmp_path / "here")
     assert again.model().to_text() == adapted.model().to_text()
     with pytest.raises(FileExistsError):

@@ -71,7 +71,8 @@ class _Run:
         return like(self._native.segments(tail), library)
 
     def page(self) -> str:
-        """The result as one HTML page with charts."""
+        """The result as one HTML page with charts: ``report.html``. Of more than 200 tails it has the table of the fleet and links
+        to the pages of tails, which :meth:`Adaptation.write` puts beside it; a tail's charts are :meth:`plot`."""
         return self._native.page(self._title)
 
     def plot(self, tail: str, charts: TailChart | Sequence[TailChart] = ()) -> Chart:
