@@ -5,11 +5,10 @@ use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use arrow_array::RecordBatch;
-use monitor::FlownConditions;
 use monitor::cost::CostFactors;
 use pipeline::monitoring::{
-    AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail,
-    NamedTable, TailDeviations, TailDocument, read_events, tables,
+    self, BeforeLearning, Event, MonitorDocument, MonitorOptions, NamedTable, TailDeviations,
+    monitor_tail, read_events, tables, warn_of_events,
 };
 use pipeline::plausibility;
 use pyo3::prelude::*;
@@ -79,23 +78,12 @@ pub(crate) fn monitor_tails(
             Some(bytes) => events_of(bytes)?,
             None => Vec::new(),
         };
-        let rules = asked.rules.iter().map(|rule| rule.parse().map_err(Failure::input));
-        let options = MonitorOptions {
-            cost: CostFactors {
-                co2_kg_per_kg: asked.co2_kg_per_kg,
-                price_per_kg: asked.fuel_price,
-                flights_per_year: asked.flights_per_year,
-            },
-            basic_performance_factor_percent: asked.basic_performance_factor_percent,
-            rules: rules.collect::<Result<Vec<_>, Failure>>()?,
-            before_learning: BeforeLearning::left_out(asked.quick),
-            since: asked.since.as_deref().map(date).transpose()?,
-        };
+        let options = options_of(&asked)?;
         let found = tails
             .par_iter()
             .map(|tail| {
                 caller.still_waits()?;
-                monitor_tail(tail, &events, &options)
+                Ok(monitored(tail, &events, &options))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let (mut documents, mut alerts) = (Vec::new(), Vec::new());
@@ -105,6 +93,7 @@ pub(crate) fn monitor_tails(
         }
         documents.sort_by(|(one, _), (other, _)| one.tail.cmp(&other.tail));
         alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
+        warn_of_events(&events, |tail| documents.iter().any(|(known, _)| known.tail == tail));
         let words = options.in_words(events.len());
         Ok((MonitorDocument::compared(documents, alerts), words))
     })?;
@@ -112,29 +101,42 @@ pub(crate) fn monitor_tails(
 }
 
 fn date(text: &str) -> Result<flight::Timestamp, Failure> {
-    pipeline::monitoring::instant(text).ok_or_else(|| {
+    monitoring::instant(text).ok_or_else(|| {
         Failure::input(format!(
             "found since = {text:?}, expected a date like 2026-03-02, or an instant like 2026-03-02T10:00:00Z"
         ))
     })
 }
 
-fn monitor_tail(
+fn options_of(asked: &MonitorAsked) -> Result<MonitorOptions, Failure> {
+    let rules = asked.rules.iter().map(|rule| rule.parse().map_err(Failure::input));
+    let options = MonitorOptions {
+        cost: CostFactors {
+            co2_kg_per_kg: asked.co2_kg_per_kg,
+            price_per_kg: asked.fuel_price,
+            flights_per_year: asked.flights_per_year,
+        },
+        basic_performance_factor_percent: asked.basic_performance_factor_percent,
+        rules: rules.collect::<Result<Vec<_>, Failure>>()?,
+        before_learning: BeforeLearning::left_out(asked.quick),
+        since: asked.since.as_deref().map(date).transpose()?,
+    };
+    options.checked().map_err(Failure::input)
+}
+
+/// What a tail shows. One that cannot be monitored costs itself, with a warning, and not the fleet.
+fn monitored(
     tail: &Tail,
     events: &[Event],
     options: &MonitorOptions,
-) -> Result<Option<(TailDocument, FlownConditions, Vec<AlertDocument>)>, Failure> {
+) -> Option<monitoring::Monitored> {
     let result = &tail.result;
-    let named =
-        |error: &dyn std::fmt::Display| Failure::input(format!("tail {}: {error}", result.tail));
     let deviations =
         TailDeviations::of_result(result, options.before_learning).since(options.since);
-    let found =
-        MonitoredTail::new(&result.tail, &deviations, events).map_err(|error| named(&error))?;
-    let documents = |found: MonitoredTail<'_>| {
-        (found.document(options), found.flown_conditions(), found.alerts(options))
-    };
-    Ok(found.map(documents))
+    monitor_tail(&result.tail, &deviations, events, options).unwrap_or_else(|error| {
+        tracing::warn!(tail = result.tail, "is not monitored: {error}");
+        None
+    })
 }
 
 #[pymethods]

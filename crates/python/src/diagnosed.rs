@@ -12,6 +12,7 @@ use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::fleet_diagnosis::{DiagnosedFleet, FleetRecord, diagnose_fleets, fleet_text};
 use pipeline::gaps_table;
+use pipeline::monitoring::warn_of_events;
 use pipeline::plausibility::{self, Book};
 use pipeline::summary::{RefusedSummary, ReportsSummary};
 use pyo3::prelude::*;
@@ -88,6 +89,10 @@ pub(crate) fn diagnose(
         let book_of = |tail: &str| models.get(tail).map(|model| Book::of(model));
         let findings = plausibility::set_aside_absurd(&mut reading, book_of, absurd);
         let groups = group(&models, &mut reading, &asked);
+        warn_of_events(&asked.events, |tail| {
+            let mut flights = groups.iter().flat_map(|group| &group.flights);
+            flights.any(|flight| flight.reduced.identity.tail == tail)
+        });
         let found = groups
             .par_iter()
             .map(|group| {

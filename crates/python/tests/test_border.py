@@ -222,6 +222,61 @@ def test_a_monitoring_says_what_it_is_of(initial, segments):
     assert repr(monitoring) == "<Monitoring: 1 tail, 10 flights, 0 changes>"
 
 
+def fleet_of_two(initial):
+    plan = """(seed: 7, aircraft: Preset(citation_x), tails: [
+        (tail: "T-1", flights: Designed((flights: 3))), (tail: "T-2", flights: Designed((flights: 3)))])"""
+    return initial.adapt(cruisefit.segment(cruisefit.simulate(plan).reports))
+
+
+def test_factors_of_a_monitoring_are_those_of_the_command_line(initial):
+    adapted = fleet_of_two(initial)
+    for name in ("co2_kg_per_kg", "fuel_price_per_kg", "flights_per_year"):
+        for value in (-5.0, 0.0, float("inf"), float("nan")):
+            with pytest.raises(cruisefit.InputError, match="(a kg of fuel|flights a year): found .*, expected a finite number above 0"):
+                adapted.monitor(**{name: value})
+    for value in (float("inf"), float("nan")):
+        with pytest.raises(cruisefit.InputError, match="basic factor.*expected a finite number of per cent"):
+            adapted.monitor(basic_performance_factor_percent=value)
+    assert adapted.monitor(basic_performance_factor_percent=-1.5, flights_per_year=100).to_dict()["tails"]
+
+
+def test_what_is_not_monitored_is_said(initial, segments):
+    """As the command line warns of it."""
+    adapted = fleet_of_two(initial)
+    events = b"date,tail,kind,note\n2019-01-01,T-1,wash,\n2019-01-01,NOBODY,wash,\n2019-02-01,NOBODY,wash,\n"
+    with pytest.warns(cruisefit.DataWarning) as caught:
+        adapted.monitor(events=events)
+    assert [str(one.message) for one in caught] == ["tail NOBODY: has events, but no flight"]
+    assert caught[0].filename == __file__
+    with pytest.warns(cruisefit.DataWarning, match="tail NOBODY: has events, but no flight"):
+        initial.diagnose(segments, events=events)
+    with pytest.warns(cruisefit.DataWarning) as caught:
+        nothing = adapted.monitor(since="2099-01-01")
+    assert [str(one.message) for one in caught] == [
+        f"tail {tail}: no segment is inside the table since 2099-01-01T00:00:00Z: there is nothing to monitor"
+        for tail in ("T-1", "T-2")
+    ]
+    assert nothing.to_dict()["tails"] == []
+
+
+@pytest.mark.parametrize("damage", ["changed", "missing"])
+def test_a_damaged_tail_costs_itself_where_only_looked_at(initial, tmp_path, damage):
+    """As at `cruisefit monitor`; what is continued is read whole, or the tail would begin anew."""
+    adapted = fleet_of_two(initial)
+    adapted.write(tmp_path / "folder")
+    file = tmp_path / "folder" / "segments" / "T-2.csv"
+    if damage == "changed":
+        file.write_bytes(file.read_bytes() + b"\n")
+    else:
+        file.unlink()
+    with pytest.raises((cruisefit.InputError, FileNotFoundError)):
+        cruisefit.Adaptation.read(tmp_path / "folder")
+    with pytest.warns(cruisefit.DataWarning, match="tail T-2 is left out: .*T-2.csv"):
+        left = cruisefit.Adaptation.read(tmp_path / "folder", strict=False)
+    (tail,) = left.monitor(quick=True).to_dict()["tails"]
+    assert tail["tail"] == "T-1"
+
+
 def test_without_deviations_the_rest_of_a_prediction_is_the_same(initial, segments):
     model = initial.adapt(segments).model()
     points = pa.table(POINTS)

@@ -151,8 +151,14 @@ class Adaptation(_Run):
                 write_bytes(file, content)
 
     @classmethod
-    def read(cls, folder: str | os.PathLike[str]) -> Adaptation:
+    def read(cls, folder: str | os.PathLike[str], *, strict: bool = True) -> Adaptation:
         """What a folder of ``cruisefit adapt`` or of :meth:`write` holds, to be continued as ``begun``.
+
+        Args:
+            folder: The folder.
+            strict: Refuse a folder of which a tail cannot be read. Without it such a tail is left out, as ``cruisefit monitor``
+                leaves it out, with a :class:`DataWarning`: to look at the others, not to be continued, since the tail would begin
+                anew.
 
         Raises:
             InputError: A file was changed or damaged.
@@ -160,17 +166,18 @@ class Adaptation(_Run):
         """
         source = Path(folder)
         tails = []
-        for _, begun, named in _native.Adapted.state(read_text(source / "STATE.ron")):
-            contents = []
-            for name, sha256 in named:
-                content = (source / name).read_bytes()
-                if hashlib.sha256(content).hexdigest() != sha256:
-                    message = "its SHA-256 is not that of STATE.ron: it was changed or damaged"
-                    raise InputError(message, file=str(source / name))
-                contents.append(content)
-            model, segments, flights = contents
-            loaded = _native.Model.from_text(model.decode(), source / named[0][0])
-            tails.append((loaded, segments, flights, begun))
+        damaged = []
+        for tail, begun, named in _native.Adapted.state(read_text(source / "STATE.ron")):
+            try:
+                stored = _stored_files(source, begun, named)
+                if not strict:
+                    _native.Adapted.stored([stored])
+                tails.append(stored)
+            except (InputError, OSError) as error:
+                if strict:
+                    raise
+                damaged.append(f"tail {tail} is left out: {error}")
+        warn(damaged)
         return cls(_native.Adapted.stored(tails))
 
     @classmethod
@@ -202,7 +209,7 @@ class Adaptation(_Run):
             events: Events to measure (CSV: ``date,tail,kind,note``), a path or bytes.
             alert: Rules: ``deviation=PCT`` (present level), ``trend=PCT`` (per year), ``change=PCT`` or ``change=PCT/DAYSd``.
             co2_kg_per_kg: kg of CO₂ from a kg of fuel.
-            fuel_price_per_kg: Price of a kg of fuel.
+            fuel_price_per_kg: Price of a kg of fuel, in any currency.
             flights_per_year: Flights a year; as many as were recorded without it.
             basic_performance_factor_percent: Basic factor of the flight management system, in per cent.
             quick: Leave out the deviation by the model before it learnt each flight.
@@ -211,7 +218,11 @@ class Adaptation(_Run):
             threads: Threads to use; all processors without it.
 
         Raises:
-            InputError: A rule or events that are none, with their line.
+            InputError: A rule or events that are none, with their line; a factor that is not a finite number above 0 (the basic
+                factor: not finite).
+
+        Warns:
+            DataWarning: A tail has nothing to monitor, cannot be monitored, or has events but no flight.
         """
         asked: dict[str, object] = {
             "events": events if events is None or isinstance(events, bytes) else Path(events).read_bytes(),
@@ -345,6 +356,26 @@ def adapt(
     warn_of_findings(adapted.findings)
     warn_of_new(segments, adapted.refused, len(adapted.tails))
     return adapted
+
+
+def _stored_files(
+    folder: Path, begun: str, named: Sequence[tuple[str, str]]
+) -> tuple[_native.Model, bytes, bytes, str]:
+    """Model, segments and flights of a tail, by their names and SHA-256, and what it was begun with.
+
+    Raises:
+        InputError: A file was changed or damaged.
+        OSError: One cannot be read.
+    """
+    contents = []
+    for name, sha256 in named:
+        content = (folder / name).read_bytes()
+        if hashlib.sha256(content).hexdigest() != sha256:
+            message = "its SHA-256 is not that of STATE.ron: it was changed or damaged"
+            raise InputError(message, file=str(folder / name))
+        contents.append(content)
+    model, segments, flights = contents
+    return _native.Model.from_text(model.decode(), folder / named[0][0]), segments, flights, begun
 
 
 def begun_of(begun: Adaptation | None) -> _native.Adapted | None:
