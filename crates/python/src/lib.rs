@@ -22,6 +22,7 @@ compile_error!("a panic must become an exception of Python: build the wheel with
 
 mod adapted;
 mod adapting;
+mod adding;
 mod checked;
 mod columnar;
 mod diagnosed;
@@ -46,6 +47,8 @@ mod _native {
     use crate::adapted::Adapted;
     #[pymodule_export]
     use crate::adapting::{adapt, evaluate, merge};
+    #[pymodule_export]
+    use crate::adding::added;
     #[pymodule_export]
     use crate::checked::{Monitored, check, monitor_tails};
     #[pymodule_export]

@@ -277,6 +277,34 @@ def test_a_damaged_tail_costs_itself_where_only_looked_at(initial, tmp_path, dam
     assert tail["tail"] == "T-1"
 
 
+def test_parts_that_were_added_up_go_on(initial, segments):
+    """Segments and flights are those that are learnt at once; the model is a sum, in another order."""
+    files = sorted((FIXTURES / "ghazi-2020" / "reports").rglob("*.txt"))
+    first, last = files[:8], files[8:]
+    with pytest.warns(cruisefit.DataWarning, match="refused"):
+        read = [cruisefit.segment([*first[::2], ("bad.txt", b"nonsense")]), cruisefit.segment(first[1::2])]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        parts = [initial.adapt(part, remainder=False) for part in read]
+    whole = cruisefit.adaptation.added(parts, [part.summary_json() for part in parts])
+    at_once = initial.adapt(cruisefit.segment(first), remainder=False)
+    (tail,) = whole.tails
+    assert whole.segments_csv(tail) == at_once.segments_csv(tail)
+    assert whole.flights_csv(tail) == at_once.flights_csv(tail)
+    assert whole.begun(tail) == at_once.begun(tail)
+    assert whole.model().to_text() == cruisefit.merge([part.model() for part in parts]).to_text()
+    assert whole.summary["reports"]["read"] == whole.summary["tails"][0]["flights_new"] == 8
+    assert [one.path for one in whole.refused] == ["bad.txt"]
+    night = cruisefit.adapt(cruisefit.segment([first[0], *last]), [initial], begun=whole, remainder=False)
+    assert night.model().flights_learnt == len(files)
+    assert night.summary["reports"]["already_known"] == 1
+    with pytest.raises(cruisefit.InputError, match="in the ledger of an earlier model too"):
+        cruisefit.adaptation.added([parts[0], parts[0]], [])
+    other = initial.adapt(read[1])
+    with pytest.raises(cruisefit.InputError, match="begun with other models or settings"):
+        cruisefit.adaptation.added([parts[0], other], [])
+
+
 def test_without_deviations_the_rest_of_a_prediction_is_the_same(initial, segments):
     model = initial.adapt(segments).model()
     points = pa.table(POINTS)

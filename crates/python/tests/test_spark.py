@@ -164,6 +164,56 @@ def test_parts_are_added_up(flights, adapted, model):
         assert max(abs(a / b - 1) for a, b in zip(*drag, strict=True)) < 1e-2
 
 
+def test_the_sum_of_parts_goes_on(session, model, reports, tmp_path):
+    """Two nights, of which the first was learnt in parts; a flight that contradicts another is refused within its part."""
+    frame = lambda rows: cruisefit.spark.flights(  # noqa: E731
+        session.createDataFrame(rows, "name string, content binary"), report="content", path="name"
+    )
+    ordered = sorted(reports)
+    later, first = [ordered[6]], ordered[:6] + ordered[7:]
+    name, content = first[0]
+    altered = content[: content.rindex(b"\n", 0, len(content) - 200) + 1]
+    begun = cruisefit.spark.adapt(frame([*first, (f"zz {name}", altered)]), [model], parts=2)
+    begun.write.parquet(str(tmp_path / "night"))
+    begun = session.read.parquet(str(tmp_path / "night"))
+    known = {row.tail: row for row in begun.collect()}
+    assert all(row.error is None and row.flights == row.flights_new for row in known.values())
+    summaries = [json.loads(row.summary) for row in known.values()]
+    assert sum(one["reports"]["read"] for one in summaries) == len(first)
+    assert [one["path"] for summary in summaries for one in summary["reports"]["refused"]] == [f"zz {name}"]
+
+    night = cruisefit.spark.adapt(frame([*later, first[-1]]), [model], begun=begun, remainder=False).collect()
+    alone = model.adapt(cruisefit.segment(first + later), remainder=False)
+    for row in night:
+        assert row.error is None
+        assert row.segments_csv.encode() == alone.segments_csv(row.tail)
+        assert row.flights == alone.model(row.tail).flights_learnt
+    assert sum(row.flights_new for row in night) == 1
+    assert all(row.error is None for row in cruisefit.spark.monitor(begun, quick=True).collect())
+
+    # What cannot go on keeps what it had, with the reason.
+    kept = cruisefit.spark.adapt(frame(later), [model], begun=begun).collect()
+    (row,) = [row for row in kept if row.error is not None]
+    assert "remainder=False" in row.error
+    for name in ("model", "segments_csv", "flights_csv", "begun", "flights"):
+        assert row[name] == known[row.tail][name]
+    refused = cruisefit.spark.adapt(frame(first), [model], parts=2, threshold_percent=1.0).collect()
+    assert len(refused) == 3 and all("threshold" in row.error for row in refused)
+
+
+def test_a_model_without_its_flights_is_kept_and_refused_by_name(model, reports):
+    """As the sums of parts were before they were kept with their flights."""
+    import pyarrow as pa
+
+    from cruisefit.spark import _ADAPTED, _continued
+
+    row = {"tail": "T-1", "flights": 7, "flights_new": 7, "model": "text"}
+    known = pa.Table.from_pylist([row], schema=_ADAPTED)
+    (found,) = _continued("T-1", known, known.slice(0, 0), lambda before, table: before).to_pylist()
+    assert found["error"].startswith("InputError: found a model without segments_csv, flights_csv, begun")
+    assert (found["model"], found["flights"], found["flights_new"]) == ("text", 7, 0)
+
+
 def test_evaluation_and_diagnosis(flights, adapted, model, reports):
     segments = cruisefit.segment(reports)
     own = cruisefit.adapt(segments, [model])

@@ -378,6 +378,20 @@ def _stored_files(
     return _native.Model.from_text(model.decode(), folder / named[0][0]), segments, flights, begun
 
 
+def added(parts: Sequence[Adaptation], summaries: Sequence[bytes]) -> Adaptation:
+    """What the parts of tails have learnt by law ``bayes`` without a remainder, as one adaptation that can be continued.
+
+    Args:
+        parts: One for each part of the flights, of which none has a flight of another.
+        summaries: ``summary.json`` of the call that learnt each part, and of calls that learnt nothing of theirs: what became of
+            the reports of all.
+
+    Raises:
+        InputError: Parts of another initial model or setting, or a flight that two have learnt.
+    """
+    return Adaptation(_native.added([part._native for part in parts], summaries))
+
+
 def begun_of(begun: Adaptation | None) -> _native.Adapted | None:
     """What is continued, as the native half takes it.
 

@@ -76,7 +76,6 @@ _ADAPTED = pa.schema(
         ("error", pa.string()),
     ]
 )
-_PART = pa.schema([("tail", pa.string()), ("model", pa.string()), ("error", pa.string())])
 _EVALUATED = pa.schema([("tail", pa.string()), ("summary", pa.string()), ("error", pa.string())])
 _MONITORED = pa.schema(
     [("tail", pa.string()), ("monitor", pa.string()), ("alerts", pa.int64()), ("error", pa.string())]
@@ -218,60 +217,53 @@ def adapt(
     Args:
         reports: Reports, or the result of :func:`flights`.
         models: Models to choose from: a flight takes that of its tail, otherwise that of its type.
-        begun: The result of an earlier call: its tails go on from there, and flights that they know change nothing.
+        begun: The result of an earlier call: its tails go on from there, and flights that they know change nothing. A tail that
+            cannot go on keeps the model that it had, with an error.
         law: ``bayes`` or ``paper``.
         threshold_percent: Law ``paper``: adapt where the error exceeds this, in per cent.
         remainder: Law ``bayes``: also learn what no table can hold.
         accept: Also learn tails that are more than 15 % off the book, which otherwise come back with an error.
         parts: Law ``bayes``: learn each tail in so many parts in parallel and add them up, for a tail with more flights than
-            one task should hold. Sums in another order differ in the last digits, and no remainder is learnt.
+            one task should hold. Sums in another order differ in the last digits, and no remainder is learnt: the next night
+            continues with ``begun`` and ``remainder=False``.
         options: As for :func:`flights`.
 
     Returns:
         Columns ``tail``, ``flights`` (in the ledger), ``flights_new``, ``model`` (text of the model file), ``segments_csv``
         (all segments learnt), ``flights_csv`` (all flights learnt), ``begun`` (SHA-256 of what the tail was begun with),
         ``summary`` (JSON of ``summary.json``, refused flights among it), ``error`` (why a tail has no
-        model; null otherwise).
+        model, or only the one that it had; null otherwise).
     """
     read = _as_flights(reports, options).where(F.col("refused").isNull())
     if parts is not None:
         if begun is not None or law != "bayes":
             raise ValueError("parts: found with begun or law paper, expected law bayes from the beginning")
-        return _adapt_in_parts(read, models, parts, accept)
 
-    def learn(known: pa.Table | None, table: pa.Table) -> dict[str, Any]:
-        before = None
-        if known is not None and known.num_rows and known.column("model")[0].is_valid:
-            row = known.slice(0, 1).to_pylist()[0]
-            before = _stored(row)
-            if table.num_rows == 0:
-                return _adapted_row(before)
-        elif table.num_rows == 0:
-            # A tail that has no model yet, and no flight that it could learn.
-            reason = known.column("error")[0].as_py() if known is not None and known.num_rows else None
-            return {"error": reason or "nothing learnt: no flight"}
-        adapted = adaptation.adapt(
+    def learn(before: adaptation.Adaptation | None, table: pa.Table) -> adaptation.Adaptation:
+        return adaptation.adapt(
             _segments_of(table),
             models,
             begun=before,
             law=law,
             threshold_percent=threshold_percent,
-            remainder=remainder,
+            remainder=remainder and parts is None,
             accept=accept,
             threads=1,
         )
-        return _adapted_row(adapted)
 
     schema = from_arrow_schema(_ADAPTED)
     if begun is None:
 
         def grouped(key: tuple[Any, ...], table: pa.Table) -> pa.Table:
-            return _row_or_error(_ADAPTED, key[0].as_py(), lambda: learn(None, table))
+            return _row_or_error(_ADAPTED, key[0].as_py(), lambda: _adapted_row(learn(None, table)))
 
-        return read.groupBy("tail").applyInArrow(grouped, schema)
+        if parts is None:
+            return read.groupBy("tail").applyInArrow(grouped, schema)
+        part = F.pmod(F.xxhash64("start", "flight"), F.lit(parts))
+        return read.groupBy("tail", part).applyInArrow(grouped, schema).groupBy("tail").applyInArrow(_added, schema)
 
     def continued(key: tuple[Any, ...], known: pa.Table, table: pa.Table) -> pa.Table:
-        return _row_or_error(_ADAPTED, key[0].as_py(), lambda: learn(known, table))
+        return _continued(key[0].as_py(), known, table, learn)
 
     return begun.groupBy("tail").cogroup(read.groupBy("tail")).applyInArrow(continued, schema)
 
@@ -425,40 +417,42 @@ def _by_tail(
     return known.cogroup(read.groupBy("tail")).applyInArrow(cogrouped, from_arrow_schema(schema))
 
 
-def _adapt_in_parts(
-    read: DataFrame, models: Sequence[Model], parts: int, accept: bool
-) -> DataFrame:
-    def learn(key: tuple[Any, ...], table: pa.Table) -> pa.Table:
-        def row() -> dict[str, Any]:
-            adapted = adaptation.adapt(
-                _segments_of(table), models, remainder=False, accept=accept, threads=1
-            )
-            if not adapted.tails:
-                return _adapted_row(adapted)
-            return {"model": adapted.model().to_text()}
+def _continued(
+    tail: str,
+    known: pa.Table,
+    table: pa.Table,
+    learn: Callable[[adaptation.Adaptation | None, pa.Table], adaptation.Adaptation],
+) -> pa.Table:
+    """The row of a tail after a night, from its row before it and the night's flights. What cannot be done costs the night, and
+    not what the tail has learnt."""
+    row = known.slice(0, 1).to_pylist()[0] if known.num_rows else {}
+    if row.get("model") is None:
+        # A tail that has no model yet, and perhaps no flight that it could learn.
+        without = {"error": row.get("error") or "nothing learnt: no flight"}
+        return _row_or_error(
+            _ADAPTED, tail, lambda: _adapted_row(learn(None, table)) if table.num_rows else without
+        )
 
-        return _row_or_error(_PART, key[0].as_py(), row)
+    def night() -> dict[str, Any]:
+        before = _stored(row)
+        return _adapted_row(learn(before, table) if table.num_rows else before)
 
-    def add(key: tuple[Any, ...], table: pa.Table) -> pa.Table:
-        def row() -> dict[str, Any]:
-            wrong = [one["error"] for one in table.to_pylist() if one["error"] is not None]
-            if wrong:
-                return {"error": "; ".join(sorted(wrong))}
-            # Sums depend on the order of their terms; that of arrival is another one at each run.
-            texts = sorted(table.column("model").to_pylist())
-            loaded = [Model.from_text(text) for text in texts]
-            merged = adaptation.merge(loaded) if len(loaded) > 1 else loaded[0]
-            return {
-                "flights": merged.flights_learnt,
-                "flights_new": merged.flights_learnt,
-                "model": merged.to_text(),
-            }
+    kept = {**{name: row.get(name) for name in _ADAPTED.names}, "flights_new": 0, "summary": None}
+    return _row_or_error(_ADAPTED, tail, night, kept)
 
-        return _row_or_error(_ADAPTED, key[0].as_py(), row)
 
-    part = F.pmod(F.xxhash64("start", "flight"), F.lit(parts))
-    learnt = read.groupBy("tail", part).applyInArrow(learn, from_arrow_schema(_PART))
-    return learnt.groupBy("tail").applyInArrow(add, from_arrow_schema(_ADAPTED))
+def _added(key: tuple[Any, ...], table: pa.Table) -> pa.Table:
+    """The row of a tail from those of its parts: what they refused is refused, and one that cannot be learnt is no part of a sum."""
+
+    def row() -> dict[str, Any]:
+        rows = table.to_pylist()
+        wrong = {one["error"] for one in rows if one["summary"] is None}
+        if wrong:
+            return {"error": "; ".join(sorted(wrong))}
+        learnt = [_stored(one) for one in rows if one["model"] is not None]
+        return _adapted_row(adaptation.added(learnt, [one["summary"].encode() for one in rows]))
+
+    return _row_or_error(_ADAPTED, key[0].as_py(), row)
 
 
 def _read_batch(
@@ -530,21 +524,33 @@ def _adapted_row(adapted: adaptation.Adaptation) -> dict[str, Any]:
 
 
 def _stored(row: dict[str, Any]) -> adaptation.Adaptation:
-    """What a row of :func:`adapt` holds, to be continued."""
+    """What a row of :func:`adapt` holds, to be continued.
+
+    Raises:
+        InputError: The row holds a model alone, such as parts had before they were kept with their flights.
+    """
+    missing = [name for name in ("segments_csv", "flights_csv", "begun") if row.get(name) is None]
+    if missing:
+        raise InputError(
+            f"found a model without {', '.join(missing)}, expected a row of cruisefit.spark.adapt, which has all of them"
+        )
     model = Model.from_text(row["model"], row["tail"])
     segments, flights = row["segments_csv"].encode(), row["flights_csv"].encode()
     return adaptation.Adaptation.stored([(model, segments, flights, row["begun"])])
 
 
 def _row_or_error(
-    schema: pa.Schema, tail: str, row: Callable[[], dict[str, Any]]
+    schema: pa.Schema,
+    tail: str,
+    row: Callable[[], dict[str, Any]],
+    otherwise: dict[str, Any] | None = None,
 ) -> pa.Table:
-    """A tail that cannot be computed costs its row, not the job."""
+    """A tail that cannot be computed costs its row, of which ``otherwise`` is left, and not the job."""
     try:
         found = row()
     except Exception as error:
-        found = {"error": f"{type(error).__name__}: {error}"}
-    return pa.Table.from_pylist([{"tail": tail, **found}], schema=schema)
+        found = {**(otherwise or {}), "error": f"{type(error).__name__}: {error}"}
+    return pa.Table.from_pylist([{**found, "tail": tail}], schema=schema)
 
 
 def _in_schema(table: pa.Table, schema: pa.Schema) -> pa.Table:
