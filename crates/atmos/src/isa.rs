@@ -20,7 +20,7 @@ use crate::constants::{
 /// ```
 ///
 /// # Errors
-/// [`OutOfDomain`] outside −2000..=20 000 m, and for NaN.
+/// [`OutOfDomain`] outside −2000 to 20 000 m, and for NaN.
 ///
 /// # Source
 /// ISO 2533:1975, clause 2 and its table of temperature gradients; EUROCONTROL BADA 3.12, section 3.1.
@@ -38,7 +38,7 @@ pub fn temperature(pressure_altitude: PressureAltitude) -> Result<Temperature, O
 /// ```
 ///
 /// # Errors
-/// [`OutOfDomain`] outside −2000..=20 000 m, and for NaN.
+/// [`OutOfDomain`] outside −2000 to 20 000 m, and for NaN.
 ///
 /// # Source
 /// ISO 2533:1975, clause 2; EUROCONTROL BADA 3.12, equations 3.1-18 and 3.1-20.
@@ -139,7 +139,7 @@ pub fn speed_of_sound(sat: Temperature) -> SpeedOfSound {
 /// Deviation of the day from the standard one: SAT − T(hp) with [`temperature`]. `[atmosphere.1]`
 ///
 /// # Errors
-/// [`OutOfDomain`] for a pressure altitude outside −2000..=20 000 m, and for NaN.
+/// [`OutOfDomain`] for a pressure altitude outside −2000 to 20 000 m, and for NaN.
 #[inline]
 pub fn isa_deviation(
     pressure_altitude: PressureAltitude,
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn refusal_names_quantity_value_and_limits() {
         let error = pressure(PressureAltitude::meters(21_000.0)).unwrap_err();
-        assert_eq!(error.to_string(), "pressure altitude 21000 m outside -2000..=20000 m");
+        assert_eq!(error.to_string(), "pressure altitude 21000 m outside -2000 to 20000 m");
         let error = super::pressure_altitude(Pressure::pascals(1.0)).unwrap_err();
         assert_eq!((error.quantity, error.unit), ("static pressure", "Pa"));
     }

@@ -41,7 +41,7 @@ pub enum AxisError {
         count: usize,
     },
     /// A breakpoint is not finite or too large to square.
-    #[error("breakpoint {index} is {value}, outside -1e100..=1e100")]
+    #[error("breakpoint {index} is {value}, outside -1e100 to 1e100")]
     NotFinite {
         /// Its index, from 0.
         index: usize,

@@ -23,7 +23,7 @@ pub enum Outside {
 
 /// A point outside a grid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("point ({x}, {y}) outside the grid {x_first}..={x_last} by {y_first}..={y_last}")]
+#[error("point ({x}, {y}) outside the grid {x_first} to {x_last} by {y_first} to {y_last}")]
 #[non_exhaustive]
 pub struct OutsideGrid {
     /// The point's x.

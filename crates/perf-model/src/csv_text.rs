@@ -136,7 +136,7 @@ pub enum CsvErrorReason {
         found: String,
     },
     /// A number that the quantity cannot have.
-    #[error("found {found:?}, expected {}..={} {} ({})", .domain.minimum, .domain.maximum, .domain.unit, .domain.quantity)]
+    #[error("found {found:?}, expected {} to {} {} ({})", .domain.minimum, .domain.maximum, .domain.unit, .domain.quantity)]
     OutOfDomain {
         /// The field.
         found: String,

@@ -323,15 +323,15 @@ mod tests {
             ),
             (
                 "-30000,41000,470,1688",
-                "line 3, column 1 (weight_lb): found \"-30000\", expected 500..=1500000 lb (gross weight)",
+                "line 3, column 1 (weight_lb): found \"-30000\", expected 500 to 1500000 lb (gross weight)",
             ),
             (
                 "30000,410000,470,1688",
-                "line 3, column 2 (pressure_altitude_ft): found \"410000\", expected -2000..=60000 ft (pressure altitude)",
+                "line 3, column 2 (pressure_altitude_ft): found \"410000\", expected -2000 to 60000 ft (pressure altitude)",
             ),
             (
                 "30000,41000,470,0",
-                "line 3, column 4 (fuel_flow_lb_h): found \"0\", expected 1..=400000 lb/h (total fuel flow)",
+                "line 3, column 4 (fuel_flow_lb_h): found \"0\", expected 1 to 400000 lb/h (total fuel flow)",
             ),
         ] {
             assert_eq!(row(text), expected);

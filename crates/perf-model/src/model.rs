@@ -71,7 +71,7 @@ pub enum ModelError {
 /// A point outside the drag table. Nothing is extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "lift coefficient {:.4}, Mach number {:.4} outside the table's lift coefficients {}..={} and Mach numbers {}..={}",
+    "lift coefficient {:.4}, Mach number {:.4} outside the table's lift coefficients {} to {} and Mach numbers {} to {}",
     .lift_coefficient, .mach, .lift_coefficients.0, .lift_coefficients.1, .machs.0, .machs.1
 )]
 pub struct OutsideTable {

@@ -41,7 +41,7 @@ pub struct RefitRule {
 
 /// An invalid share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("refit share {numerator}/{denominator}, outside 0..=1")]
+#[error("refit share {numerator}/{denominator}, outside 0 to 1")]
 #[non_exhaustive]
 pub struct ShareError {
     /// The numerator given.

@@ -46,7 +46,7 @@ fn more_than_30_percent_to_the_node() {
     assert!(!never.is_due(10, 10));
     assert!(RefitRule::more_than(0, 1).unwrap().is_due(1, usize::MAX));
     let error = RefitRule::more_than(2, 1).unwrap_err();
-    assert_eq!(error.to_string(), "refit share 2/1, outside 0..=1");
+    assert_eq!(error.to_string(), "refit share 2/1, outside 0 to 1");
     assert!(RefitRule::more_than(0, 0).is_err());
     assert_eq!(RefitRule::more_than(3, 10).unwrap(), rule);
 }

@@ -2,7 +2,7 @@
 
 /// A quantity outside the domain in which a function or constructor is valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{quantity} {value} {unit} outside {minimum}..={maximum} {unit}")]
+#[error("{quantity} {value} {unit} outside {minimum} to {maximum} {unit}")]
 pub struct OutOfDomain {
     /// The quantity in the field's words.
     pub quantity: &'static str,
@@ -62,7 +62,7 @@ mod tests {
         let error = check_within("pressure altitude", "m", 31_000.0, -2000.0, 20_000.0);
         assert_eq!(
             error.unwrap_err().to_string(),
-            "pressure altitude 31000 m outside -2000..=20000 m"
+            "pressure altitude 31000 m outside -2000 to 20000 m"
         );
     }
 }

@@ -55,7 +55,7 @@ pub enum StateDataError {
         expected: usize,
     },
     /// A row of the information matrix is longer than the triangle.
-    #[error("row {row} of the information has {found} entries, outside 0..={maximum}")]
+    #[error("row {row} of the information has {found} entries, outside 0 to {maximum}")]
     Row {
         /// Which row.
         row: usize,

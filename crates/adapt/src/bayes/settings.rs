@@ -67,7 +67,7 @@ pub struct BayesSettings(SettingValues);
 
 /// A setting out of its limits.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("setting {setting} of law bayes is {value}, outside {minimum}..={maximum}")]
+#[error("setting {setting} of law bayes is {value}, outside {minimum} to {maximum}")]
 #[non_exhaustive]
 pub struct SettingsError {
     /// Which setting.

@@ -185,7 +185,7 @@ fn damaged_files_are_refused() {
         (|data| *data.nodes.last_mut().unwrap() = 150, "touched node 150 is out of order or not"),
         (
             |data| data.information[2] = vec![0.0; 4],
-            "row 2 of the information has 4 entries, outside 0..=3",
+            "row 2 of the information has 4 entries, outside 0 to 3",
         ),
         (|data| data.observations[0] = -1.0, "observations of what was learnt has the value -1"),
         (|data| data.newest = None, "the newest instant"),

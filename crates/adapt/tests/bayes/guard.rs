@@ -109,7 +109,7 @@ fn an_initial_table_without_drag_is_refused() {
 fn settings_out_of_limits_are_refused_by_name() {
     let good = *BayesSettings::physical_2026().values();
     let refused = BayesSettings::new(SettingValues { correction_std: 0.0, ..good }).unwrap_err();
-    assert_eq!(refused.to_string(), "setting correction_std of law bayes is 0, outside 0.001..=1");
+    assert_eq!(refused.to_string(), "setting correction_std of law bayes is 0, outside 0.001 to 1");
     assert!(BayesSettings::new(SettingValues { extra_flight_std: f64::NAN, ..good }).is_err());
     assert!(BayesSettings::new(SettingValues { half_life_days: Some(0.0), ..good }).is_err());
 }

@@ -152,7 +152,7 @@ fn slope_across_the_edge_is_0_where_held() {
 #[test]
 fn refusal_says_point_and_limits() {
     let error = grid().locate(0.6, 0.7, Outside::Error).unwrap_err();
-    assert_eq!(error.to_string(), "point (0.6, 0.7) outside the grid 0.1..=0.5 by 0.5..=0.9");
+    assert_eq!(error.to_string(), "point (0.6, 0.7) outside the grid 0.1 to 0.5 by 0.5 to 0.9");
 }
 
 #[test]

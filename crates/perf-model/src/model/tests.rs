@@ -106,7 +106,7 @@ fn outside_the_table_there_is_no_prediction() {
     assert!(matches!(error, PredictError::OutsideTable(_)));
     assert_eq!(
         error.to_string(),
-        "lift coefficient 0.5114, Mach number 0.4500 outside the table's lift coefficients 0.1..=0.6 and Mach numbers 0.5..=0.92"
+        "lift coefficient 0.5114, Mach number 0.4500 outside the table's lift coefficients 0.1 to 0.6 and Mach numbers 0.5 to 0.92"
     );
     let error = model.predict(&point(30_000.0, 700.0, 0.8)).unwrap_err();
     assert!(matches!(error, PredictError::OutOfDomain(_)), "{error}");

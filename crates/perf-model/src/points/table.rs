@@ -296,13 +296,13 @@ mod tests {
             (
                 2,
                 PointCell::Number(78.0),
-                "line 7, column 3 (mach): found \"78\", expected 0.1..=0.99 Mach (Mach number)",
+                "line 7, column 3 (mach): found \"78\", expected 0.1 to 0.99 Mach (Mach number)",
             ),
             (2, PointCell::Missing, "line 7, column 3 (mach): found \"\", expected a number"),
             (
                 0,
                 PointCell::Number(f64::INFINITY),
-                "line 7, column 1 (mass_kg): found \"inf\", expected 225..=680000 kg (gross mass)",
+                "line 7, column 1 (mass_kg): found \"inf\", expected 225 to 680000 kg (gross mass)",
             ),
             (
                 4,

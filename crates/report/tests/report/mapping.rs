@@ -311,7 +311,11 @@ fn mappings_that_are_refused() {
         ),
         ("separator: ';'", "separator: '§'", "'§' cannot separate fields or begin comments"),
         ("separator: ';'", "separator: '5'", "'5' cannot separate fields or begin comments"),
-        ("recovery_factor: 1.0", "recovery_factor: 1.1", "recovery factor 1.1 - outside 0.5..=1 -"),
+        (
+            "recovery_factor: 1.0",
+            "recovery_factor: 1.1",
+            "recovery factor 1.1 - outside 0.5 to 1 -",
+        ),
         ("52000", "-52000", "zero-fuel mass -52000 kg outside"),
         ("tail:", "tall:", "line 7, column 5"),
         ("\"CG\"", "\"ALT\"", "line 24, column"),
