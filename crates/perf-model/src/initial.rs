@@ -180,7 +180,7 @@ pub fn initial_model(
     let drag_table = table_of(aircraft, &fit.surface, &coordinates)?;
     let extrapolated_nodes = extrapolated.iter().filter(|&&mark| mark).count();
     let model = PerformanceModel::new(aircraft.clone(), fit.surface, drag_table, extrapolated)
-        .map_err(|source| error::from_model(source, inside))?;
+        .map_err(|source| error::from_model(source, inside, (lift_coefficients, machs)))?;
     let residuals_percent = residuals_percent(&rows, &fit.surface);
     let fit = GuideFit {
         points: rows.len(),

@@ -55,7 +55,16 @@ pub enum InitialModelError {
     /// The polynomial is not positive at a node.
     #[error(
         "the polynomial's drag coefficient {drag_coefficient:.5} at lift coefficient {lift_coefficient}, Mach number {mach} is not positive: {}",
-        if *.extrapolated { "the node lies outside the guide's range, narrow the table" } else { "the guide's fuel flows are not those of one aircraft" }
+        if *.extrapolated {
+            format!(
+                "the node lies outside the guide's range (lift coefficient {:.3} to {:.3}, Mach number {:.3} to {:.3}): narrow the \
+                 table, or, where the aircraft flies there, check the guide's units: metres under pressure_altitude_ft or \
+                 kilograms under weight_lb make the lift coefficients too small",
+                .lift_coefficients.0, .lift_coefficients.1, .machs.0, .machs.1
+            )
+        } else {
+            "the guide's fuel flows are not those of one aircraft".to_owned()
+        }
     )]
     DragNotPositive {
         /// The node's lift coefficient.
@@ -66,6 +75,10 @@ pub enum InitialModelError {
         drag_coefficient: f64,
         /// Whether the node lies outside the guide's range.
         extrapolated: bool,
+        /// Smallest and largest lift coefficient of the guide.
+        lift_coefficients: (f64, f64),
+        /// Smallest and largest Mach number of the guide.
+        machs: (f64, f64),
     },
     /// A row outside a domain.
     #[error("line {line}: {domain}")]
@@ -127,10 +140,11 @@ pub enum Undetermined {
     OneCurve,
 }
 
-/// A polynomial that makes no model; `inside` tells whether a node lies inside the guide's range.
+/// A polynomial that makes no model; `inside` tells whether a node lies inside the guide's range of lift coefficients and Mach numbers.
 pub(super) fn from_model(
     error: ModelError,
     inside: impl Fn((f64, f64)) -> bool,
+    (lift_coefficients, machs): ((f64, f64), (f64, f64)),
 ) -> InitialModelError {
     match error {
         ModelError::DragNotPositive { lift_coefficient, mach, drag_coefficient } => {
@@ -139,6 +153,8 @@ pub(super) fn from_model(
                 mach,
                 drag_coefficient,
                 extrapolated: !inside((lift_coefficient, mach)),
+                lift_coefficients,
+                machs,
             }
         }
         other => InitialModelError::Model(other),
