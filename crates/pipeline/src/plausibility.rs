@@ -47,10 +47,22 @@ pub fn check_document(
     let mut findings = findings(&reading.flights, now_s);
     findings.extend(not_evaluated::findings(&reading.flights));
     if let Some(models) = models {
-        let of_each = reading.flights.iter().zip(models.of_each(&reading.flights));
-        let with_books =
-            of_each.filter_map(|(flight, model)| Some((Book::of(model.ok()?), flight)));
-        findings.extend(judged(with_books).into_iter().map(|judged| judged.finding));
+        let mut with_books = Vec::new();
+        let mut without: BTreeMap<(&str, String), usize> = BTreeMap::new();
+        for (flight, model) in reading.flights.iter().zip(models.of_each(&reading.flights)) {
+            match model {
+                Ok(model) => with_books.push((Book::of(model), flight)),
+                Err(reason) => {
+                    let tail = flight.reduced.identity.tail.as_str();
+                    *without.entry((tail, reason.to_string())).or_default() += 1;
+                }
+            }
+        }
+        findings.extend(judged(with_books.into_iter()).into_iter().map(|judged| judged.finding));
+        let without = without.into_iter();
+        findings.extend(
+            without.map(|((tail, reason), flights)| book::not_compared(tail, flights, &reason)),
+        );
     }
     let reports = ReportsSummary {
         read: reading.flights.len(),

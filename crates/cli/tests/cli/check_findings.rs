@@ -75,7 +75,8 @@ fn clipped(text: &str) -> String {
 }
 
 /// The kinds that no slip of a single column shows.
-const MORE_SLIPS: [Slip; 11] = [
+const MORE_SLIPS: [Slip; 12] = [
+    ("another type", |text| header(text, "AIRCRAFT", "A320"), "no-model-of-its-own"),
     (
         "FQ: kg declared as lb",
         |text| with_column(text, ["FQ", "lb"], |_, used| 0.453_592_37 * (15_670.0 - used)),

@@ -146,7 +146,7 @@ fn explain(air: &Means, ratio: f64) -> (String, String) {
         if (implied_k - fahrenheit_read_k).abs() < SAME_TEMPERATURE_K {
             return (
                 "SAT: degrees Fahrenheit declared as Celsius".to_owned(),
-                "SAT: convert to degC (scale 0.555556, offset -17.7778 in a mapping)".to_owned(),
+                "SAT: unit \"degF\" in a mapping; a report is to have degC".to_owned(),
             );
         }
         let total = temperature::static_to_total(Temperature::kelvin(implied_k), air.mach, 1.0);

@@ -5,6 +5,7 @@ use flight::{FlightIdentity, Severity};
 use super::fuel::USED_AGAINST_FLOW;
 use super::{DataFinding, mean, slips};
 use crate::segments_table::Evaluated;
+use crate::summary::counted;
 
 /// Code of the finding that a tail is farther off the book than an aircraft can be.
 pub const DEVIATION: &str = "book-deviation";
@@ -13,6 +14,8 @@ pub const DEVIATION: &str = "book-deviation";
 pub const PLAUSIBLE_PERCENT: f64 = 15.0;
 /// Code of the finding that segments of a tail lie outside the table of its book.
 pub const OUTSIDE: &str = "outside-table";
+/// Code of the finding that flights are compared with no book, as none is theirs.
+pub const NOT_COMPARED: &str = "no-model-of-its-own";
 /// Flights of which no segment is inside the table, from which that is a slip of units or a table that is too small: one or two may
 /// have been flown where the aircraft seldom is.
 pub const FLIGHTS_OUTSIDE: usize = 3;
@@ -35,10 +38,30 @@ pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFind
         .collect()
 }
 
+/// Flights of a tail that none of the models is for, with the reason.
+#[must_use]
+pub fn not_compared(tail: &str, flights: usize, reason: &str) -> DataFinding {
+    #[expect(clippy::cast_precision_loss, reason = "flights are far fewer than 2^53")]
+    let size = flights as f64;
+    DataFinding {
+        severity: Severity::Warning,
+        code: NOT_COMPARED,
+        tail: tail.to_owned(),
+        flight: String::new(),
+        start: String::new(),
+        size,
+        unit: "-",
+        message: format!("{} compared with no model: {reason}", counted(flights, "flight")),
+        likely_cause: "a model of another aircraft, or another type in the reports or the mapping than the model's"
+            .to_owned(),
+        remedy: "the model of this aircraft, or the right type (`aircraft` in a mapping)".to_owned(),
+    }
+}
+
 /// Whether a finding is one against a book: those that need no model are more certain.
 #[must_use]
 pub fn is_of_book(finding: &DataFinding) -> bool {
-    [DEVIATION, OUTSIDE].contains(&finding.code)
+    [DEVIATION, OUTSIDE, NOT_COMPARED].contains(&finding.code)
 }
 
 /// What fuel used against fuel flow determines without a model decides what is wrong where a tail is off its book: the flow, if the book
@@ -101,7 +124,7 @@ pub fn stray(
     }
     let lift = mean(evaluated.iter().flatten().map(|segment| segment.lift_coefficient));
     let beside = 100.0 * ((1.0 + percent / 100.0) / (1.0 + known_percent / 100.0) - 1.0);
-    let (likely_cause, remedy) = causes(beside, lift);
+    let (likely_cause, remedy) = causes(beside, lift, Compared::OneFlight);
     Some(DataFinding {
         severity: Severity::Serious,
         code: DEVIATION,
@@ -111,7 +134,7 @@ pub fn stray(
         size: percent,
         unit: "%",
         message: format!(
-            "recorded fuel flow is {percent:+.1} % off the book, other flights of the tail {known_percent:+.1} %; \
+            "recorded fuel flow is {percent:+.1} % off the book, other flights of the tail {known_percent:+.1} %, in % of the book's flow; \
              more than {PLAUSIBLE_PERCENT} % apart is rarely an aircraft"
         ),
         likely_cause: likely_cause.to_owned(),
@@ -132,7 +155,7 @@ fn deviation(tail: &str, errors: &[f64], lift: Option<f64>) -> Option<DataFindin
     if percent.abs() <= PLAUSIBLE_PERCENT {
         return None;
     }
-    let (likely_cause, remedy) = causes(percent, lift);
+    let (likely_cause, remedy) = causes(percent, lift, Compared::Tail);
     Some(DataFinding {
         severity: Severity::Serious,
         code: DEVIATION,
@@ -142,7 +165,7 @@ fn deviation(tail: &str, errors: &[f64], lift: Option<f64>) -> Option<DataFindin
         size: percent,
         unit: "%",
         message: format!(
-            "recorded fuel flow is {percent:+.1} % off the book on average of {} segments; beyond ±{PLAUSIBLE_PERCENT} % is rarely an aircraft",
+            "recorded fuel flow is {percent:+.1} % off the book on average of {} segments, in % of the book's flow; beyond ±{PLAUSIBLE_PERCENT} % is rarely an aircraft",
             errors.len()
         ),
         likely_cause: likely_cause.to_owned(),
@@ -150,31 +173,57 @@ fn deviation(tail: &str, errors: &[f64], lift: Option<f64>) -> Option<DataFindin
     })
 }
 
-fn causes(percent: f64, lift: Option<f64>) -> (&'static str, &'static str) {
+/// What is off the book: where all flights of a tail are, the book may be at fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Compared {
+    OneFlight,
+    Tail,
+}
+
+/// How far off the book a mass in another unit is at least, %: half of the drag in cruise comes from lift, a quarter where an aircraft
+/// flies fast and light.
+const MASS_SLIP_PERCENT: f64 = 20.0;
+
+fn causes(percent: f64, lift: Option<f64>, compared: Compared) -> (&'static str, &'static str) {
     let lift = lift.unwrap_or(0.5);
-    if lift > HIGHEST_CRUISE_LIFT_COEFFICIENT {
+    if lift > HIGHEST_CRUISE_LIFT_COEFFICIENT && percent < -MASS_SLIP_PERCENT {
         return (
             "mass in lb declared as kg, or ALT or MACH in another unit",
-            "unit lb for ZFW and FOB",
+            "unit lb for the mass: that of the load sheet, or of the column that a mapping takes it from",
         );
     }
-    if lift < LOWEST_CRUISE_LIFT_COEFFICIENT {
+    if lift < LOWEST_CRUISE_LIFT_COEFFICIENT && percent > MASS_SLIP_PERCENT {
         return (
             "mass in kg declared as lb, or ALT or MACH in another unit",
-            "unit kg for ZFW and FOB",
+            "unit kg for the mass: that of the load sheet, or of the column that a mapping takes it from",
         );
     }
     // Predicted over recorded flow: 2 for one engine of two, 2.2 for kg read as lb.
     let ratio = 1.0 / (1.0 + percent / 100.0);
-    if ratio > 1.6 {
-        ("WF: flow of one engine as total, or kg/h declared as lb/h", "scale 2 or unit kg/h for WF")
-    } else if ratio < 0.65 {
-        ("WF: lb/h declared as kg/h, or the total given for each engine", "unit lb/h for WF")
-    } else {
-        (
+    match (ratio, compared) {
+        (1.6.., Compared::OneFlight) => (
+            "WF: flow of one engine as total, or kg/h declared as lb/h",
+            "scale 2 or unit kg/h for WF",
+        ),
+        (1.6.., Compared::Tail) => (
+            "WF: flow of one engine as total, or kg/h declared as lb/h; or the guide's flow: lb/h declared as kg/h",
+            "scale 2 or unit kg/h for WF, or a new model from a guide in its right unit",
+        ),
+        (..0.65, Compared::OneFlight) => {
+            ("WF: lb/h declared as kg/h, or the total given for each engine", "unit lb/h for WF")
+        }
+        (..0.65, Compared::Tail) => (
+            "WF: lb/h declared as kg/h, or the total given for each engine; or the guide's flow: of one engine, or kg/h declared as lb/h",
+            "unit lb/h for WF, or a new model from a guide with the flow of all engines",
+        ),
+        (_, Compared::OneFlight) => (
+            "a load sheet in another unit, or another aircraft than the tail",
+            "compare the mass and the tail of this flight with their sources",
+        ),
+        (_, Compared::Tail) => (
             "another engine or variant than the book's, or a load sheet in another unit",
             "the guide of this variant",
-        )
+        ),
     }
 }
 
@@ -239,5 +288,24 @@ mod tests {
         let mut alone = [finding(DEVIATION, 57.4)];
         decide_by_fuel_used(&mut alone);
         assert_eq!(alone[0].remedy, "mend book-deviation");
+    }
+
+    /// A right flight of a light jet, fast and light, 16 % off its book: a mass in another unit would be farther off. What a guide may
+    /// have made is not blamed on one flight alone.
+    #[test]
+    fn causes_are_those_that_the_size_admits() {
+        let (cause, remedy) = causes(15.7, Some(0.21), Compared::Tail);
+        assert!(!cause.contains("declared") && !remedy.contains("ZFW"), "{cause}: {remedy}");
+        let (cause, _) = causes(57.0, Some(0.21), Compared::Tail);
+        assert!(cause.starts_with("mass in kg declared as lb"), "{cause}");
+        let (cause, _) = causes(-55.0, Some(0.9), Compared::Tail);
+        assert!(cause.starts_with("mass in lb declared as kg"), "{cause}");
+        // A guide with the flow of one engine of two makes every flight of the tail twice its book.
+        for (percent, guide) in [(118.4, "of one engine"), (-54.6, "lb/h declared as kg/h")] {
+            let (of_tail, _) = causes(percent, Some(0.35), Compared::Tail);
+            assert!(of_tail.contains(&format!("the guide's flow: {guide}")), "{of_tail}");
+            let (of_one, _) = causes(percent, Some(0.35), Compared::OneFlight);
+            assert!(!of_one.contains("guide"), "{of_one}");
+        }
     }
 }
