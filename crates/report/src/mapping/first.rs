@@ -168,6 +168,9 @@ impl Columns {
                 "Isa(deviation_k: 0.0)"
             };
             line(text, "SAT", source, true);
+            if source.starts_with("Isa") {
+                self.say_of_temperatures(has("TAT"), text);
+            }
         }
         if !has("VTAS") && !derived {
             line(text, "VTAS", "FromMach", true);
@@ -181,6 +184,26 @@ impl Columns {
             );
             line(text, "DRIFT", &source, false);
         }
+    }
+
+    /// At a temperature of the standard atmosphere: a column that may hold the real one.
+    fn say_of_temperatures(&self, has_total: bool, text: &mut String) {
+        let is_candidate =
+            |&column: &usize| self.names[column].may_be_air_temperature() && !self.is_empty(column);
+        let candidate = (0..self.names.len()).find(is_candidate);
+        let words = match (candidate, has_total) {
+            (Some(column), _) => format!(
+                "{:?} may hold it: Recorded(column: {0:?}, unit: \"degC\") (or \"degF\", \"K\")",
+                self.names[column].sent
+            ),
+            (None, true) => {
+                "TAT would give it with a Mach number, which no column holds".to_owned()
+            }
+            (None, false) => return,
+        };
+        let end = text.trim_end().len();
+        text.truncate(end);
+        let _ = writeln!(text, " no column is known for it; {words}");
     }
 
     fn texts(&self) -> String {

@@ -80,6 +80,51 @@ fn flights_and_tails_are_found_by_usual_names() {
     assert!(unnamed.contains("flight: FileName,   // ? one flight"), "{unnamed}");
 }
 
+/// Units in brackets, parentheses and behind underscores, and engines named by the hand: each by itself.
+#[test]
+fn units_are_found_behind_usual_names() {
+    let of = |name: &str, value: &str| {
+        let names = format!("utc,gs_kt,gw_kg,{name}");
+        let row = format!("2024-03-01T10:00:00Z,470,64000,{value}");
+        first_mapping(format!("{names}\n{row}\n").as_bytes()).unwrap()
+    };
+    for (name, value, quantity, unit) in [
+        ("TAS [m/s]", "230", "VTAS", "m/s"),
+        ("TAS (m/s)", "230", "VTAS", "m/s"),
+        ("TAS_m_s", "230", "VTAS", "m/s"),
+        ("ALT [m]", "11000", "ALT", "m"),
+        ("Pressure Altitude [m]", "11000", "ALT", "m"),
+        ("Press Alt [m]", "11000", "ALT", "m"),
+        ("OAT (F)", "-60", "SAT", "degF"),
+        ("FF LH [pph]", "900", "WF(1)", "lb/h"),
+        ("FF LH [lb/hr]", "900", "WF(1)", "lb/h"),
+        ("N2 LH", "87", "N2(1)", "%"),
+    ] {
+        let expected = format!("{quantity:?}: Recorded(column: {name:?}, unit: {unit:?}),\n");
+        let mapping = of(name, value);
+        assert!(mapping.contains(&expected), "{expected} is not in {mapping}");
+    }
+    // Milliseconds and minutes are no speed and no length.
+    assert!(!of("TAS ms", "230").contains("VTAS\": Recorded"));
+    assert!(of("time_m", "10").contains("\"time_m\" (10)"));
+}
+
+/// Where the standard atmosphere's temperature is written, a column that may hold the real one is named at that line.
+#[test]
+fn a_temperature_under_an_unknown_name_is_pointed_at() {
+    let of = |name: &str| {
+        let text = format!(
+            "utc,alt_ft,mach,gs_kt,gw_kg,{name}\n2024-03-01T10:00:00Z,35000,0.78,470,64000,-54\n"
+        );
+        let mapping = first_mapping(text.as_bytes()).unwrap();
+        mapping.lines().find(|line| line.contains("\"SAT\"")).unwrap().to_owned()
+    };
+    let line = of("amb temp");
+    assert!(line.contains("Isa(deviation_k: 0.0),   // ? no column is known for it"), "{line}");
+    assert!(line.contains("\"amb temp\" may hold it"), "{line}");
+    assert!(of("oil temp").ends_with("// ?"), "{}", of("oil temp"));
+}
+
 /// Names of our own tables are known too, and the drift angle is found from track and heading.
 #[test]
 fn time_in_seconds_and_a_drift_from_track_and_heading() {

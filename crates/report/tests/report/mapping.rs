@@ -98,6 +98,9 @@ fn two_flights_in_one_file() {
     assert_eq!(header.zero_fuel_mass.to_kilograms(), 52_000.0);
     assert_eq!(header.fuel_on_board.to_kilograms(), 13_000.0);
     assert_eq!(codes(&reports[0]), ["mapped-derived", "mapped-fuel-used", "mapped-rows-left-out"]);
+    // A mass that never rises has no rise to be told of.
+    let fuel_used = reports[0].findings.iter().find(|one| one.code == "mapped-fuel-used").unwrap();
+    assert!(!fuel_used.message.contains(" 0.0 kg"), "{}", fuel_used.message);
     assert_eq!(reports[0].findings[0].line, Some(3));
     assert_eq!(reports[0].findings[2].line, Some(5));
 

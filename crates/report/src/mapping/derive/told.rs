@@ -8,6 +8,9 @@ use super::rows::Surplus;
 use super::{Load, Part};
 use crate::refusal::counted;
 
+/// A rise of gross mass that is printed as more than 0.0 kg.
+const WORTH_A_WORD_KG: f64 = 0.05;
+
 impl Part<'_> {
     /// The derivations, for the report's notes.
     pub(super) fn derived(&self, load: &Load) -> Vec<&'static str> {
@@ -68,10 +71,14 @@ impl Part<'_> {
             findings.push(note(Severity::Warning, "mapped-temperature-assumed", message));
         }
         if let Some(largest_rise_kg) = load.largest_rise_kg {
-            let message = format!(
-                "fuel used is the running maximum of the fall of gross mass, which rose by up to {largest_rise_kg:.1} kg \
-                 on the way"
-            );
+            // A mass that never rises needs no word on its noise.
+            let rise = if largest_rise_kg >= WORTH_A_WORD_KG {
+                format!(", which rose by up to {largest_rise_kg:.1} kg on the way")
+            } else {
+                String::new()
+            };
+            let message =
+                format!("fuel used is the running maximum of the fall of gross mass{rise}");
             findings.push(note(Severity::Note, "mapped-fuel-used", message));
         }
         self.findings_of_rows(load, surplus, &mut findings);

@@ -11,15 +11,17 @@ pub(super) struct Name {
 }
 
 /// What units are called at the end of a name, and what we call them; the longer ones first.
-const UNITS: [(&str, &str); 40] = [
+const UNITS: [(&str, &str); 43] = [
     ("feet", "ft"),
     ("ft", "ft"),
     ("meters", "m"),
     ("metres", "m"),
+    ("m", "m"),
     ("kts", "kt"),
     ("knots", "kt"),
     ("kt", "kt"),
     ("mps", "m/s"),
+    (METERS_PER_SECOND, "m/s"),
     ("kgh", "kg/h"),
     ("kgph", "kg/h"),
     ("kghr", "kg/h"),
@@ -51,8 +53,12 @@ const UNITS: [(&str, &str); 40] = [
     ("pct", "%"),
     ("percent", "%"),
     ("c", "degC"),
+    ("f", "degF"),
     ("k", "K"),
 ];
+
+/// "m/s" without its stroke, which in one piece are milliseconds.
+const METERS_PER_SECOND: &str = "ms";
 
 /// A unit that a mapping has by a scale.
 const GALLONS: &str = "gal/h";
@@ -87,12 +93,26 @@ impl Name {
                 continue;
             };
             let last = pieces[split..].concat();
-            if let Some((_, unit)) = UNITS.iter().find(|(word, _)| *word == last) {
-                let plain = pieces[..split].concat();
+            let plain = pieces[..split].concat();
+            let is_meant = |word: &str| {
+                word == last
+                    && (word != METERS_PER_SECOND || count == 2)
+                    // "time_m" counts minutes.
+                    && (word != "m" || !plain.ends_with("time"))
+            };
+            if let Some((_, unit)) = UNITS.iter().find(|(word, _)| is_meant(word)) {
                 return Self { sent: sent.to_owned(), plain, unit: Some(unit) };
             }
         }
         Self { sent: sent.to_owned(), plain: pieces.concat(), unit: None }
+    }
+
+    /// Whether it may be that of an outside air temperature by a name that no rule has.
+    pub(super) fn may_be_air_temperature(&self) -> bool {
+        let of_other =
+            ["oil", "fuel", "egt", "itt", "cabin", "turbine", "engine", "total", "tat", "dew"];
+        ["temp", "oat", "sat"].iter().any(|word| self.plain.contains(word))
+            && !of_other.iter().any(|word| self.plain.contains(word))
     }
 
     pub(super) fn is(&self, wanted: &str) -> bool {
@@ -139,13 +159,18 @@ pub(super) fn unit_called(text: &str) -> Option<&'static str> {
         "deg", "%",
     ];
     let as_written = own.into_iter().find(|unit| *unit == text.trim());
-    as_written.or_else(|| UNITS.iter().find(|(word, _)| *word == plain).map(|(_, unit)| *unit))
+    let is_meant = |word: &str| word == plain && word != METERS_PER_SECOND;
+    as_written.or_else(|| UNITS.iter().find(|(word, _)| is_meant(word)).map(|(_, unit)| *unit))
 }
 
 /// The engine of a column named by one of `stems` and a number, a letter or a side; `None` for any other column.
 pub(super) fn engine_of(name: &Name, stems: &[&str]) -> Option<u8> {
-    let marks: [(u8, &[&str]); 4] =
-        [(1, &["1", "l", "a", "left"]), (2, &["2", "r", "b", "right"]), (3, &["3"]), (4, &["4"])];
+    let marks: [(u8, &[&str]); 4] = [
+        (1, &["1", "l", "a", "left", "lh"]),
+        (2, &["2", "r", "b", "right", "rh"]),
+        (3, &["3"]),
+        (4, &["4"]),
+    ];
     for stem in stems {
         for (engine, words) in marks {
             for word in words {
