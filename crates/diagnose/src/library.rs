@@ -193,12 +193,19 @@ fn lacking(
     // Anti-ice bleed is tested by what stands for it. An assumed temperature can be predicted with, and nothing be learnt of it.
     let tells =
         |point: &EffectPoint, input: NeededInput| input == NeededInput::AntiIce || point.has(input);
-    let is_untold = |point: &&EffectPoint| !id.entry().needs.iter().all(|&it| tells(point, it));
-    let missing = points.iter().filter(is_untold).count();
-    if (missing as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64 {
+    let needs = id.entry().needs;
+    let are_too_many =
+        |missing: usize| (missing as f64) > (1.0 - RECORDED_SHARE) * points.len() as f64;
+    let untold = |point: &&EffectPoint| !needs.iter().all(|&it| tells(point, it));
+    if !are_too_many(points.iter().filter(untold).count()) {
         return None;
     }
-    Some(id.entry().needs.to_vec())
+    let is_missing = |input: &NeededInput| {
+        are_too_many(points.iter().filter(|point| !tells(point, *input)).count())
+    };
+    let missing: Vec<NeededInput> = needs.iter().copied().filter(is_missing).collect();
+    // Inputs may each be recorded often enough, and too seldom together.
+    Some(if missing.is_empty() { needs.to_vec() } else { missing })
 }
 
 fn hidden_grid(

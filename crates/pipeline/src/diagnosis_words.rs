@@ -354,8 +354,8 @@ pub fn note_words(note: &Note) -> String {
              tsfc_throttle is over corrected thrust there"
         ),
         Note::AntiIceByTemperature { segments, of_segments } => format!(
-            "anti-ice bleed is not recorded in {segments} of {of_segments} segments: anti_ice_bleed takes it as on above −40 °C \
-             there"
+            "anti-ice bleed is not recorded in {segments} of {of_segments} segments: there anti_ice_bleed assumes it on where the \
+             static air temperature is above −40 °C"
         ),
         Note::BeyondFlights { segments, of_segments } => format!(
             "{segments} of {of_segments} segments lie beyond what the learnt flights flew: a gap there may be what those flights \

@@ -143,7 +143,7 @@ fn effect(id: EffectId) -> String {
     };
     let _ = writeln!(text, "Sign:        {sign}");
     let in_words = |needed: &NeededInput| match needed {
-        NeededInput::AntiIce => "A/I (not recorded: taken as on above −40 °C)",
+        NeededInput::AntiIce => "A/I (not recorded: assumed on above −40 °C)",
         NeededInput::StaticAirTemperature => "SAT (recorded, not assumed)",
         other => other.name(),
     };

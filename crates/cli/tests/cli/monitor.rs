@@ -274,6 +274,10 @@ fn months_and_costs_are_printed_as_asked_for() {
     assert!((number("fuel_kg_per_year") - 100.0 * number("fuel_kg_per_flight")).abs() < 1e-6);
     assert!((number("co2_kg_per_year") - 3.16 * number("fuel_kg_per_year")).abs() < 1e-6);
     assert!(cost["price_per_year"].is_null());
+    let priced =
+        monitor(&adapted, &["--quick", "--fuel-price", "0.9", "--flights-per-year", "100"]);
+    let printed = priced.expect(0).stdout;
+    assert!(printed.contains(" kg fuel a year at a cost of "), "{printed}");
 }
 
 #[test]

@@ -105,6 +105,19 @@ fn missing_optional_columns_are_said_and_the_rest_is_found() {
     assert!(found.verdict.class().contains(&EffectId::ZeroLiftDrag), "{:?}", found.verdict);
 }
 
+/// What is recorded is not named among what is missing.
+#[test]
+fn needed_inputs_are_those_that_are_missing() {
+    let model = exact_model();
+    let mut fleet = small(60, 10);
+    for means in fleet.flights.iter_mut().flatten().map(|segment| &mut segment.means) {
+        means.latitude_deg = None;
+    }
+    let found = run(&model, &fleet);
+    let earth = found.not_testable.iter().find(|entry| entry.effect == EffectId::RotatingEarth);
+    assert_eq!(earth.unwrap().needs, [NeededInput::Latitude]);
+}
+
 /// Of a temperature that nobody recorded nothing can be learnt, and anti-ice bleed that is not recorded is said to be guessed.
 #[test]
 fn what_stands_for_a_recording_is_said() {

@@ -130,18 +130,23 @@ fn append_performance_factor(tail: &TailDocument, text: &mut String) {
 
 fn append_cost(tail: &TailDocument, text: &mut String) {
     let cost = &tail.cost;
-    let figures: Vec<String> = [
-        (cost.fuel_kg_per_year, "kg fuel"),
-        (cost.co2_kg_per_year, "kg CO₂"),
-        (cost.price_per_year, "in price"),
-    ]
-    .into_iter()
-    .filter_map(|(value, unit)| value.map(|value| format!("{} {unit}", plain(value, 0))))
-    .collect();
+    let figures: Vec<String> =
+        [(cost.fuel_kg_per_year, "kg fuel"), (cost.co2_kg_per_year, "kg CO₂")]
+            .into_iter()
+            .filter_map(|(value, unit)| value.map(|value| format!("{} {unit}", plain(value, 0))))
+            .collect();
+    // The currency is that of the price asked with.
+    let price = cost
+        .price_per_year
+        .map_or_else(String::new, |price| format!(" at a cost of {}", plain(price, 0)));
     // Fuel a year alone follows from the table; it is printed where it was asked for what follows from it.
-    if figures.len() > 1 {
-        let _ =
-            writeln!(text, "{}: {} a year, by the present level", tail.tail, figures.join(", "));
+    if figures.len() > 1 || !price.is_empty() {
+        let _ = writeln!(
+            text,
+            "{}: {} a year{price}, by the present level",
+            tail.tail,
+            figures.join(" and ")
+        );
     }
 }
 

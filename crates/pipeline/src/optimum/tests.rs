@@ -184,6 +184,23 @@ fn an_optimum_beyond_what_is_informed_is_at_the_edge() {
     assert!(nowhere[0].levels.is_empty() && nowhere[0].best.is_empty());
 }
 
+/// The mark is at what lies at the edge: of one level that was asked for the level, not the Mach number that lies inside the table.
+#[test]
+fn the_mark_of_an_edge_is_at_the_level_or_at_the_mach_number() {
+    let best = |mass_kg: f64| {
+        let all = found(&model(0.1, 0.0), mass_kg, &question(&[0.0], None));
+        let table = super::text::table(&all, None);
+        (all[0].best[0].mach, table)
+    };
+    let (inside, table) = best(17_000.0);
+    assert!(table.contains("370*"), "{table}");
+    let row = table.lines().find(|line| line.starts_with("max range")).unwrap();
+    assert!(!row.contains(&format!("370*  {inside:.3}*")), "{row}");
+    let (highest, table) = best(45_000.0);
+    let row = table.lines().find(|line| line.starts_with("max range")).unwrap();
+    assert!(row.contains(&format!("370*  {highest:.3}*")), "{row}");
+}
+
 /// By hand: at 2,000 kg the optimum lies below the table's Mach 0.3, so that 99 % of the greatest specific range is not known: the
 /// long-range Mach number is at that edge, though it lies above it.
 #[test]

@@ -48,8 +48,8 @@ fn notes(conditions: &[ConditionOptimum], highest_ft: Option<f64>) -> String {
     };
     if all().any(|(condition, best)| is_marked(condition, best) || best.book_at_edge) {
         text.push_str(
-            "* Mach number or level at the edge of what was asked for or of what guide or flights inform: the aircraft's own \
-             optimum, or the book's, may be beyond it.\n",
+            "* at a level or a Mach number: it lies at the edge of what was asked for or of what guide or flights inform; the \
+             aircraft's own optimum, or the book's, may be beyond it.\n",
         );
     }
     if all().any(|(condition, best)| open_ends(condition, best).iter().any(Option::is_some)) {
@@ -159,7 +159,8 @@ fn limits(levels_ft: impl Iterator<Item = f64>, highest_ft: Option<f64>) -> Stri
 }
 
 fn row(condition: &ConditionOptimum, best: &BestLevel) -> Vec<String> {
-    let mark = if is_marked(condition, best) { "*" } else { "" };
+    let mark = |is_at_edge: bool| if is_at_edge { "*" } else { "" };
+    let (level_mark, mach_mark) = (mark(best.at_edge), mark(is_mach_at_edge(condition, best)));
     let beyond = if best.beyond_flights == Some(true) { "~" } else { "" };
     let [level_open, mach_open] = open_ends(condition, best);
     let mach_ci95 = condition.speed_at(best).and_then(|speed| speed.mach_ci95);
@@ -182,16 +183,15 @@ fn row(condition: &ConditionOptimum, best: &BestLevel) -> Vec<String> {
     let book = best.book_pressure_altitude_ft.zip(best.book_mach).map_or_else(
         || "–".to_owned(),
         |(book_ft, book_mach)| {
-            let mark = if best.book_at_edge { "*" } else { "" };
-            format!("{} {}{mark}", level(book_ft), mach(book_mach))
+            format!("{} {}{}", level(book_ft), mach(book_mach), mark(best.book_at_edge))
         },
     );
     let level_interval = best.pressure_altitude_ci95.filter(|_| is_wide(best));
     let level_interval = interval(level_interval, level_open, level);
     vec![
         format!("{kind} {:.0}", condition.mass_kg),
-        format!("{}{beyond}{level_interval}", level(best.pressure_altitude_ft)),
-        format!("{}{}{mark}", mach(best.mach), interval(mach_ci95, mach_open, mach)),
+        format!("{}{level_mark}{beyond}{level_interval}", level(best.pressure_altitude_ft)),
+        format!("{}{mach_mark}{}", mach(best.mach), interval(mach_ci95, mach_open, mach)),
         book,
         saved,
     ]
@@ -202,5 +202,9 @@ fn day(condition: &ConditionOptimum) -> String {
 }
 
 fn is_marked(condition: &ConditionOptimum, best: &BestLevel) -> bool {
-    best.at_edge || condition.speed_at(best).is_some_and(|speed| speed.edge.is_some())
+    best.at_edge || is_mach_at_edge(condition, best)
+}
+
+fn is_mach_at_edge(condition: &ConditionOptimum, best: &BestLevel) -> bool {
+    condition.speed_at(best).is_some_and(|speed| speed.edge.is_some())
 }
