@@ -61,23 +61,48 @@ pub(crate) fn model_of_bytes(path: &Path, bytes: &[u8]) -> Result<ModelFile, Fai
 }
 
 fn model_of_text(path: &Path, text: &str) -> Result<ModelFile, Failure> {
-    ModelFile::from_text(text).map_err(|error| Failure::BadFile {
-        path: show(path),
-        help: error.help().or_else(|| other_kind(text)),
-        reason: error.to_string(),
+    ModelFile::from_text(text).map_err(|error| match other_kind(text) {
+        // Of another file nothing is damaged or cut off.
+        Some(help) => Failure::BadFile {
+            path: show(path),
+            reason: "not a model file".to_owned(),
+            help: Some(help),
+        },
+        None => {
+            Failure::BadFile { path: show(path), help: error.help(), reason: error.to_string() }
+        }
     })
 }
 
-/// What a text is that is no model, where it is of a kind that this program writes.
+/// What a text is that is no model, where it is of a kind that this program reads or writes.
 fn other_kind(text: &str) -> Option<String> {
+    let fields =
+        || text.lines().map(str::trim).map(|line| line.split_once(':').map(|(key, _)| key));
+    let has = |wanted: &str| fields().any(|key| key == Some(wanted));
+    // A model, however damaged, has the aircraft and its guide in one file.
+    if text.lines().any(|line| line.trim() == "(" || line.starts_with('('))
+        && !has("drag_coefficient")
+    {
+        if has("quantities") && has("time") {
+            return Some(kind_words("a mapping"));
+        }
+        if has("wing_area_m2") && has("type_code") && !has("format") {
+            return Some(kind_words("an aircraft file"));
+        }
+    }
     let kind = match text.trim_start().chars().next()? {
         '{' => "a JSON document",
         '<' => "a page (HTML) or a picture",
         _ if text.starts_with("CRUISE-REPORT") => "a cruise report",
-        _ if text.lines().next()?.contains(',') => "a table (CSV)",
+        '(' => return None,
+        _ if text.lines().next()?.contains([',', ';', '\t']) => "a table (CSV)",
         _ => return None,
     };
-    Some(format!("this is {kind}; models are the .ron files that `init` and `adapt` write"))
+    Some(kind_words(kind))
+}
+
+fn kind_words(kind: &str) -> String {
+    format!("this is {kind}; models are the .ron files that `init` and `adapt` write")
 }
 
 /// Writes a model file: whole or not at all.
@@ -167,4 +192,30 @@ fn files_of(argument: &Path) -> Result<Vec<PathBuf>, Failure> {
         return Err(Failure::bad_file(argument, "a folder without a model file (.ron)"));
     }
     Ok(paths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An intact file of another kind is not a damaged model; a model that is cut off is.
+    #[test]
+    fn other_kinds_of_files_are_named() {
+        let mapping = "(\n    format: 1,\n    time: Seconds(),\n    quantities: {\n    },\n)\n";
+        let aircraft = "// Of no tail.\n(\n    name: \"A\",\n    type_code: \"A320\", engines: 2,\n    wing_area_m2: 122.6,\n)\n";
+        for (text, kind) in [
+            (mapping, "this is a mapping"),
+            (aircraft, "this is an aircraft file"),
+            ("a;b\n1;2\n", "this is a table"),
+            ("a,b\n1,2\n", "this is a table"),
+        ] {
+            let found = model_of_text(Path::new("x"), text).unwrap_err();
+            let Failure::BadFile { reason, help, .. } = found else { panic!("{found:?}") };
+            assert_eq!(reason, "not a model file");
+            assert!(help.unwrap().starts_with(kind), "{text}");
+        }
+        let cut = "(\n    format: 5,\n    aircraft: (\n        type_code: \"A320\",\n        wing_area_m2: 122.6,\n";
+        let found = model_of_text(Path::new("x"), cut).unwrap_err();
+        assert!(found.to_string().contains("cut off"), "{found}");
+    }
 }
