@@ -112,7 +112,7 @@ fn read_reports(
     progress: Progress,
 ) -> Result<Reading, Failure> {
     let source = source_of(arguments, checks)?;
-    let inputs = inputs::collect(&arguments.reports, source.mapping.is_some())?;
+    let inputs = inputs::collect(&arguments.reports, arguments.mapping.as_deref())?;
     let bar = progress.bar(inputs.files.len(), "reading reports");
     let mut reading = source.read_all(&inputs.files, &bar);
     bar.finish();

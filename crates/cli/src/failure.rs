@@ -60,6 +60,20 @@ pub(crate) enum Failure {
         /// ", 3 other files skipped", or empty.
         skipped: String,
     },
+    /// No recording among the inputs, where a mapping is in force.
+    #[error("no recording in {inputs}{skipped}; the mapping {mapping} is in force")]
+    #[diagnostic(help(
+        "with a mapping (option --mapping, or `mapping` in the project file) recordings end in .csv, .gz, .zst, .parquet, .arrow, \
+         .feather; cruise reports of a folder without recordings, in .txt, .rpt or .gz, are read as they are"
+    ))]
+    NoRecordings {
+        /// The value given.
+        inputs: String,
+        /// ", 3 other files skipped", or empty.
+        skipped: String,
+        /// The mapping, as it is named.
+        mapping: String,
+    },
     /// Every report was refused.
     #[error("no report could be used, {files} refused")]
     AllRefused {

@@ -34,15 +34,27 @@ const RECORDING_ENDINGS: [&str; 8] =
     ["csv", "gz", "zst", "parquet", "arrow", "arrows", "feather", "ipc"];
 
 /// Collects the files behind arguments: a file is taken as it is, a folder is searched recursively for files with a
-/// report's ending, anything else is tried as a glob.
+/// report's ending, anything else is tried as a glob. `mapping` is the one in force, by its name: then a folder is searched for
+/// recordings, and for cruise reports where it holds none.
 ///
 /// # Errors
 /// An argument that matches nothing, or no file at all.
-pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Inputs, Failure> {
-    let endings: &[&str] = if with_mapping { &RECORDING_ENDINGS } else { &REPORT_ENDINGS };
-    let mut collected = Collected::default();
-    for argument in arguments {
-        collect_one(argument, endings, &mut collected)?;
+pub(crate) fn collect(arguments: &[PathBuf], mapping: Option<&str>) -> Result<Inputs, Failure> {
+    let all_with = |endings: &[&str]| {
+        let mut collected = Collected::default();
+        for argument in arguments {
+            collect_one(argument, endings, &mut collected)?;
+        }
+        Ok::<_, Failure>(collected)
+    };
+    let endings: &[&str] = if mapping.is_some() { &RECORDING_ENDINGS } else { &REPORT_ENDINGS };
+    let mut collected = all_with(endings)?;
+    if mapping.is_some() && collected.files.is_empty() {
+        let mut reports = all_with(&REPORT_ENDINGS)?;
+        let found = reports.files.len();
+        reports.files.retain(|path| crate::reading::is_cruise_report(path));
+        reports.skipped += found - reports.files.len();
+        collected = reports;
     }
     let Collected { mut files, skipped, refused, .. } = collected;
     // Equal paths are one file: their order among each other is nothing, and a stable sort takes half of the list again.
@@ -51,13 +63,15 @@ pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Input
     if files.is_empty() {
         crate::terminal::tell_refused(&refused);
         let inputs: Vec<String> = arguments.iter().map(|path| show(path)).collect();
-        return Err(Failure::NoReports {
-            inputs: inputs.join(", "),
-            skipped: match skipped {
-                0 => String::new(),
-                1 => ", 1 other file skipped".to_owned(),
-                n => format!(", {n} other files skipped"),
-            },
+        let skipped = match skipped {
+            0 => String::new(),
+            1 => ", 1 other file skipped".to_owned(),
+            n => format!(", {n} other files skipped"),
+        };
+        let inputs = inputs.join(", ");
+        return Err(match mapping {
+            None => Failure::NoReports { inputs, skipped },
+            Some(mapping) => Failure::NoRecordings { inputs, skipped, mapping: mapping.to_owned() },
         });
     }
     if skipped > 0 {
@@ -154,14 +168,32 @@ mod tests {
         for name in ["a/b/2.txt", "a/1.RPT", "a/3.txt.gz", "readme.md", "a/x.csv"] {
             std::fs::write(folder.path().join(name), "x").unwrap();
         }
-        let inputs = collect(&[folder.path().to_owned()], false).unwrap();
+        let inputs = collect(&[folder.path().to_owned()], None).unwrap();
         assert_eq!(inputs.files.len(), 3);
         assert_eq!(inputs.skipped, 2);
-        let globbed = collect(&[folder.path().join("a/*/*.txt")], false).unwrap();
+        let globbed = collect(&[folder.path().join("a/*/*.txt")], None).unwrap();
         assert_eq!(globbed.files, [deep.join("2.txt")]);
         // The same file given twice, under two names of the same path, is read once.
-        let twice = collect(&[deep.join("2.txt"), deep.clone()], false).unwrap();
+        let twice = collect(&[deep.join("2.txt"), deep.clone()], None).unwrap();
         assert_eq!(twice.files.len(), 1);
+    }
+
+    /// What `convert` wrote is read as what it is; other texts are no recordings, and the mapping in force is named.
+    #[test]
+    fn with_a_mapping_reports_are_found_where_no_recording_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("notes.txt"), "CRUISE").unwrap();
+        let failure = collect(&[folder.path().to_owned()], Some("qar.ron")).unwrap_err();
+        let text = failure.to_string();
+        assert!(text.starts_with("no recording in ") && text.contains("qar.ron"), "{text}");
+        assert!(text.contains("1 other file skipped"), "{text}");
+        std::fs::write(path("1.txt"), "CRUISE-REPORT 1\n").unwrap();
+        let inputs = collect(&[folder.path().to_owned()], Some("qar.ron")).unwrap();
+        assert_eq!((inputs.files, inputs.skipped), (vec![path("1.txt")], 1));
+        std::fs::write(path("a.csv"), "x").unwrap();
+        let inputs = collect(&[folder.path().to_owned()], Some("qar.ron")).unwrap();
+        assert_eq!((inputs.files, inputs.skipped), (vec![path("a.csv")], 2));
     }
 
     #[cfg(unix)]
@@ -172,16 +204,16 @@ mod tests {
         for name in ["a", "b"] {
             std::os::unix::fs::symlink(".", folder.path().join(name)).unwrap();
         }
-        let inputs = collect(&[folder.path().to_owned()], false).unwrap();
+        let inputs = collect(&[folder.path().to_owned()], None).unwrap();
         assert_eq!(inputs.files, [folder.path().join("1.txt")]);
     }
 
     #[test]
     fn an_empty_folder_is_reported() {
         let folder = tempfile::tempdir().unwrap();
-        let failure = collect(&[folder.path().to_owned()], false).unwrap_err();
+        let failure = collect(&[folder.path().to_owned()], None).unwrap_err();
         assert!(failure.to_string().starts_with("no cruise report in "), "{failure}");
-        let missing = collect(&[folder.path().join("nothing.txt")], false).unwrap_err();
+        let missing = collect(&[folder.path().join("nothing.txt")], None).unwrap_err();
         assert!(missing.to_string().ends_with("no such file or folder"), "{missing}");
     }
 }

@@ -72,7 +72,8 @@ impl Source {
     /// Reads a file and finds the segments of its flights.
     pub(crate) fn read_file(&self, path: &Path, buffers: &mut Buffers) -> FileRead {
         let refused = |reason| (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
-        let Some(mapping) = &self.mapping else {
+        let Some(mapping) = self.mapping.as_ref().filter(|_| !is_own(path, &mut buffers.raw))
+        else {
             return match read_unmapped(path, &mut buffers.raw) {
                 Ok(()) => {
                     let reader = buffers.reader.with_checks(self.checks);
@@ -88,6 +89,25 @@ impl Source {
             Err(reason) => refused(reason),
         }
     }
+}
+
+/// Bytes that show what a file is.
+const BEGINNING_BYTES: u64 = 64;
+
+/// Whether a file is a cruise report by its first line, plain or gzip.
+pub(crate) fn is_cruise_report(path: &Path) -> bool {
+    let mut beginning = Vec::new();
+    bytes::read_beginning(path, heads::BEGINNING_BYTES, &mut beginning).is_ok()
+        && (beginning.starts_with(FIRST_WORD) || report::head(&beginning).is_some())
+}
+
+/// What the first line of a cruise report begins with.
+const FIRST_WORD: &[u8] = b"CRUISE-REPORT";
+
+/// Whether a file is what this program writes, which no mapping is for: a cruise report, or a table of segments.
+fn is_own(path: &Path, beginning: &mut Vec<u8>) -> bool {
+    bytes::read_beginning(path, BEGINNING_BYTES, beginning).is_ok()
+        && (beginning.starts_with(FIRST_WORD) || pipeline::segments_table::is_table(beginning))
 }
 
 /// The bytes of a report or of a table of segments; of one in Parquet, its rows as text.

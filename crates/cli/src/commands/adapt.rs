@@ -53,12 +53,13 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let models = read_models(&arguments.models.models)?;
     check_threshold(arguments)?;
     let source = source_of(&arguments.reports, Checks::Made)?;
-    let inputs = inputs::collect(&arguments.reports.reports, source.mapping.is_some())?;
-    let files = inputs.files.len() + inputs.refused.len();
+    let inputs = inputs::collect(&arguments.reports.reports, arguments.reports.mapping.as_deref())?;
     let bar = progress.bar(inputs.files.len(), "reading headers");
     let Heads { tails, mut refused } = source.heads(inputs.files, &bar);
     bar.finish();
     refused.extend(inputs.refused);
+    // Flights, as all commands count them: a recording holds many.
+    let files = tails.values().map(Vec::len).sum::<usize>() + refused.len();
     let law = law_of(arguments);
     let by_model = with_models(tails, &models, &mut refused);
     check_refused(&refused, files, arguments.reports.strict, by_model.is_empty())?;

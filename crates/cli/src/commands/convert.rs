@@ -30,7 +30,7 @@ const FIRST_COLUMN: &str = "TIME ";
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &ConvertArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mapping = read_mapping(&arguments.mapping)?;
-    let inputs = inputs::collect(&arguments.recordings, true)?;
+    let inputs = inputs::collect(&arguments.recordings, Some(&arguments.mapping))?;
     let mut refused = inputs.refused;
     if arguments.strict {
         let mut checked = Conversion::new(&mapping, Output::Nowhere);

@@ -233,7 +233,7 @@ fn reports_arguments(reports: &[PathBuf]) -> ReportsArgs {
 }
 
 fn reports_below(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    Ok(crate::inputs::collect(&[folder.to_owned()], false)?.files)
+    Ok(crate::inputs::collect(&[folder.to_owned()], None)?.files)
 }
 
 fn unseen_errors(

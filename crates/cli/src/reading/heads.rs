@@ -13,7 +13,7 @@ use crate::failure::RefusedReport;
 use crate::progress::Bar;
 
 /// A report's header fits into this many bytes nearly always; otherwise the whole report is read.
-const BEGINNING_BYTES: u64 = 4096;
+pub(super) const BEGINNING_BYTES: u64 = 4096;
 
 /// A flight to read.
 #[derive(Clone, Debug)]
