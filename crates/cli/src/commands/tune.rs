@@ -1,7 +1,10 @@
 //! `cruisefit tune`: settings of law `bayes` fitted to past reports.
 
+mod shown;
+
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::path::Path;
 
 use adapt::bayes::{BayesSettings, Search, SettingValues, search_half_life, tune};
 use flight::Observation;
@@ -11,9 +14,10 @@ use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::models::{check_model_replaceable, read_model, write_model};
 use crate::progress::Progress;
-use crate::reading::FlightRead;
+use crate::reading::{FlightRead, Reading};
 use pipeline::adaptation::refuse_impossible;
 use pipeline::model_file::{LawSettings, ModelFile};
+use pipeline::models::Models;
 use pipeline::summary::counted;
 
 /// Runs the command.
@@ -37,6 +41,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     refuse_impossible(&mut reading, flight::Timestamp::now());
+    refuse_other_types(&mut reading, &model, &arguments.model)?;
     check_refused(&reading.refused, files, arguments.reports.strict, reading.flights.is_empty())?;
     reading.flights.sort_by(FlightRead::order);
     let mut by_tail: BTreeMap<&str, usize> = BTreeMap::new();
@@ -65,6 +70,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         })
         .collect();
     let segments: usize = flights.iter().map(Vec::len).sum();
+    check_enough(&flights, segments)?;
     let mut text =
         format!("{}, {}\n", counted(flights.len(), "flight"), counted(segments, "segment"));
     let steps = search(arguments, &mut model, &flights, &mut text)?;
@@ -76,7 +82,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         "settings": model.settings.bayes.values(),
         "written": [show(&arguments.output)],
     });
-    let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
+    text.push_str(&shown::settings(model.settings.bayes.values()));
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
     Ok(Outcome { refused: reading.refused, ..Outcome::with_figures(text, figures) })
 }
@@ -117,6 +123,10 @@ fn search(
             let _ = writeln!(text, "  ln evidence {:.2}  {}", step.log_evidence, step.changed);
             steps.push(serde_json::json!({ "ln_evidence": step.log_evidence, "changed": step.changed.to_string() }));
         }
+        text.push_str(
+            "What is maximised is the evidence times a prior that keeps each setting near its start: ln evidence alone may fall from step \
+             to step.\n",
+        );
         model.settings.bayes = tuned.settings;
         let span_days = span_days(flights);
         if arguments.half_life.is_none() && span_days > DAYS_IN_WHICH_AIRCRAFT_AGE {
@@ -127,6 +137,43 @@ fn search(
         }
     }
     Ok(steps)
+}
+
+/// Moves the flights of other aircraft than the model's to the refused ones.
+fn refuse_other_types(
+    reading: &mut Reading,
+    model: &ModelFile,
+    path: &Path,
+) -> Result<(), Failure> {
+    let models = Models::new(vec![(path.to_owned(), model.clone())])
+        .map_err(|same| Failure::bad_file(path, &same))?;
+    models.of_tails(reading);
+    Ok(())
+}
+
+/// Flights below which what is found is the prior rather than the fleet: the scatter of so many is known to a sixth.
+const FEW_FLIGHTS: usize = 20;
+
+/// Refuses flights that show nothing of the noise, and warns of few.
+fn check_enough(flights: &[Vec<Observation>], segments: usize) -> Result<(), Failure> {
+    let used = flights.iter().filter(|segments| !segments.is_empty()).count();
+    if segments == 0 {
+        return Err(Failure::BadArgument {
+            argument: "REPORTS",
+            reason: format!(
+                "{} and no segment inside the model's table: nothing to find settings from",
+                counted(flights.len(), "flight")
+            ),
+        });
+    }
+    if used < FEW_FLIGHTS {
+        tracing::warn!(
+            "{} with {}: settings found from fewer than {FEW_FLIGHTS} flights are little more than those it begins with",
+            counted(used, "flight"),
+            counted(segments, "segment")
+        );
+    }
+    Ok(())
 }
 
 /// Over half a year an aircraft's engines lose about what a flight's own errors amount to, 1 %, at 2 % a year.

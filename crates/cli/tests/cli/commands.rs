@@ -1,5 +1,7 @@
 //! Each command once on real input.
 
+use std::path::Path;
+
 use crate::json_schema::assert_held;
 use crate::support::{
     adapt, bytes_below, copy_of, cruisefit, csv_columns, fixture, initial_model, numbers, root,
@@ -347,12 +349,97 @@ fn tuned_settings_are_kept_by_the_model() {
     ])
     .expect(0);
     assert!(ran.stdout.contains("ln evidence"), "{}", ran.stdout);
+    // Twelve flights are few, and what is printed are settings with units.
+    ran.says("fewer than 20 flights");
+    assert!(
+        ran.stdout.contains("a prior that keeps each setting near its start"),
+        "{}",
+        ran.stdout
+    );
+    assert!(
+        ran.stdout.contains("  correction_std                              10 % of drag\n"),
+        "{}",
+        ran.stdout
+    );
+    assert!(ran.stdout.contains("none (knowledge does not age)"), "{}", ran.stdout);
     let output = scratch.path().join("out");
     adapt(&tuned, &output, &[fixture("reports/0001.txt")], &[]).expect(0);
     // Other settings are another initial state.
     adapt(&model, &output, &[fixture("reports/0002.txt")], &[])
         .expect(2)
         .says("was started with another setting");
+}
+
+/// Cruise reports and tables of segments need no mapping, and none hurts them. What is refused is counted in flights by every command.
+#[test]
+fn own_files_are_read_as_what_they_are_where_a_mapping_is_in_force() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = |name: &str| scratch.path().join(name).to_str().unwrap().to_owned();
+    let reports = fixture("reports").to_str().unwrap().to_owned();
+    let (plain, mapped, again) = (path("plain.csv"), path("mapped.csv"), path("again.csv"));
+    let mapping = "--mapping=cruise-points";
+    cruisefit(&["segment", &reports, "-o", &plain]).expect(0);
+    cruisefit(&["segment", &reports, mapping, "-o", &mapped]).expect(0);
+    cruisefit(&["segment", &mapped, mapping, "-o", &again]).expect(0);
+    for table in [&mapped, &again] {
+        assert_eq!(std::fs::read(table).unwrap(), std::fs::read(&plain).unwrap());
+    }
+    // Twelve flights of one file, whose type is open between two models.
+    let model = initial_model(scratch.path()).to_str().unwrap().to_owned();
+    let (a320, other) = (path("a320"), path("OTHER.ron"));
+    cruisefit(&["guide", "--type", "A320", "-o", &a320]).expect(0);
+    let (aircraft, guide) = (path("a320/AIRCRAFT.ron"), path("a320/guide.csv"));
+    cruisefit(&["init", "--aircraft", &aircraft, "--guide", &guide, "-o", &other]).expect(0);
+    let output = path("out");
+    for command in [&["evaluate"][..], &["adapt", "-o", &output]] {
+        let words = [command, &[&plain, "--model", &model, "--model", &other]].concat();
+        cruisefit(&words).expect(2).says("no report could be used, 12 refused");
+    }
+}
+
+/// Flights that show nothing of the noise, and those of another aircraft, make no settings.
+#[test]
+fn tune_refuses_what_it_finds_no_settings_from() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = |name: &str| scratch.path().join(name);
+    let model = initial_model(scratch.path());
+    let tune = |reports: &Path| {
+        let tuned = path("TUNED.ron");
+        let words = [
+            "tune".as_ref(),
+            reports.as_os_str(),
+            "--model".as_ref(),
+            model.as_os_str(),
+            "-o".as_ref(),
+            tuned.as_os_str(),
+        ];
+        let ran = cruisefit(&words).expect(2);
+        assert!(!tuned.exists());
+        ran
+    };
+    let report = std::fs::read_to_string(fixture("reports/0001.txt")).unwrap();
+    let rows = report.lines().position(|line| line.starts_with("TIME ")).unwrap() + 6;
+    let short: Vec<&str> = report.lines().take(rows).collect();
+    std::fs::write(path("short.txt"), short.join("\n") + "\n").unwrap();
+    tune(&path("short.txt")).says("1 flight and no segment inside the model's table");
+    std::fs::create_dir(path("other")).unwrap();
+    for name in ["0001.txt", "0002.txt"] {
+        let report = std::fs::read_to_string(fixture("reports").join(name)).unwrap();
+        std::fs::write(path("other").join(name), report.replace("global5000", "A320")).unwrap();
+    }
+    tune(&path("other"))
+        .says("found aircraft type \"A320\", expected \"global5000\"")
+        .says("no report could be used, 2 refused");
+    // `check` says that it has compared them with nothing.
+    let other = path("other");
+    let words = ["check".as_ref(), other.as_os_str(), "--model".as_ref(), model.as_os_str()];
+    let checked = cruisefit(&words).expect(0);
+    assert!(checked.stdout.contains("no-model-of-its-own"), "{}", checked.stdout);
+    assert!(
+        checked.stdout.contains("2 flights compared with no model: found aircraft type \"A320\""),
+        "{}",
+        checked.stdout
+    );
 }
 
 #[test]
