@@ -75,6 +75,10 @@ impl ChangeBeliefs {
 /// A minute in years.
 const MINUTE_YEARS: f64 = 60.0 / (DAYS_PER_YEAR * SECONDS_PER_DAY);
 
+/// Sets of events that are less probable than this share of the most probable one enter the trend without a step that nobody recorded
+/// beside them: with one they count next to nothing.
+pub const LEAST_SHARE_WITH_A_STEP: f64 = 0.01;
+
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;
 

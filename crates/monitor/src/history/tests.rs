@@ -80,3 +80,24 @@ fn what_is_known_to_be_a_step_is_no_trend() {
     assert_eq!(found.levels.boundaries(), [20]);
     assert!(found.changes.is_empty(), "a step that is known is not found");
 }
+
+/// A step that stands out by thousands of standard deviations, and is no boundary because the series is too short for a change to be
+/// probable beforehand, leaves a trend that is a number.
+#[test]
+fn a_step_beyond_all_doubt_leaves_a_finite_trend() {
+    let beliefs = ChangeBeliefs::of_2026();
+    let minute = |k: i64| Timestamp::from_second(1_700_000_000 + 60 * k).unwrap();
+    let flights = (0..40).map(|k| {
+        let mean = 1e-3 * (k % 2) as f64 + if k >= 20 { 60.0 } else { 0.0 };
+        FlightDeviation::of_segments(minute(k), &[mean; 400]).unwrap()
+    });
+    let series = Series::new(flights.collect()).unwrap();
+    let weights = vec![1e6; 40];
+    let levels = Levels::fit(&series, &weights, &[], &beliefs).unwrap();
+    let steps = levels.steps_beside(&series, &weights);
+    assert!(steps.iter().any(|step| step.ln_odds(1.5) > 1e3));
+    let asked = Asked::new(&series, &weights, &[], beliefs);
+    let stepped = stepped_events(&asked, &[], (&[], &[])).unwrap();
+    let trend = trend::averaged(&stepped, &asked, (&[], &[])).unwrap();
+    assert!(trend.value.is_finite() && trend.deviation > 0.0, "{trend:?}");
+}

@@ -2,22 +2,19 @@
 
 use super::{Asked, SteppedEvents, merged};
 use crate::levels::{Estimate, Levels};
-use crate::settings::ChangeBeliefs;
+use crate::settings::{ChangeBeliefs, LEAST_SHARE_WITH_A_STEP};
 
-/// Sets of events that are less probable than this share of the most probable one are averaged without a step beside them: with one they
-/// count next to nothing.
-const LEAST_SHARE: f64 = 0.01;
-
-/// The trend over every set S of events that may be steps, of a tail that ages as fast as is typical and of one that hardly does, each
-/// alone and with one step more that nobody recorded, before any flight: what it would be counts as much as it is probable.
+/// The trend over every set S of events that may be steps, alone, and with one step more that nobody recorded, before any flight: what it
+/// would be counts as much as it is probable. With a step more, and where nothing was done to burn less, the tail may also be one that
+/// hardly ages.
 ///
 /// ```text
-/// t = Σ p·t_S,o,  variance Σ p·(v_S,o + (t_S,o − t)²),  p ∝ p_S·p(d | S, o),  o of 1.5 and 0.3 % a year     [monitoring.24]
-/// with a step N(0, σ²) before flight k: p·½·p_k/(1 − p_k)·p(d | step)/p(d | none),  each of two σ           [monitoring.25]
+/// t = Σ p·t_p,  variance Σ p·(v_p + (t_p − t)²)                                                            [monitoring.24]
+/// with a step N(0, σ²) before flight k: p_S·½·p_k/(1 − p_k)·p(d | S, o, step)/p(d | S),  each of two σ      [monitoring.25]
 /// ```
 ///
-/// with `p_k` of [`crate::ChangeBeliefs::change_within`] and σ of [`crate::ChangeBeliefs::unrecorded_step_deviations_percent`]. `found` are
-/// first flights after changes, `recorded` those after events.
+/// with `p_k` of [`ChangeBeliefs::change_within`] and σ of [`ChangeBeliefs::unrecorded_step_deviations_percent`]. `found` are first flights
+/// after changes, `recorded` those after events.
 ///
 /// # Source
 /// Madigan and Raftery 1994, doi 10.1080/01621459.1994.10476894: averaging over the models that are not far less probable.
@@ -36,27 +33,27 @@ pub(super) fn averaged(
     for (set, ln) in &stepped.weighed {
         let boundaries = merged(found, set);
         let ageing = asked.levels(&boundaries, beliefs)?;
-        let hardly = asked.levels(&boundaries, &steady)?;
-        let odds = (hardly.ln_evidence(middle_percent, &steady)
-            - ageing.ln_evidence(middle_percent, beliefs))
-        .exp();
-        let share = (ln - most).exp();
-        trends.add(share, ageing.trend_percent_per_year());
+        let ln = ln - most;
+        trends.add(ln, ageing.trend_percent_per_year());
+        if ln < LEAST_SHARE_WITH_A_STEP.ln() {
+            continue;
+        }
+        add_unrecorded(&mut trends, ln, &ageing, (asked, recorded));
         // What is washed ages.
-        let steady = asked.done.is_empty().then_some((share * odds, &hardly));
-        for (share, levels) in core::iter::once((share, &ageing)).chain(steady) {
-            if share >= LEAST_SHARE {
-                add_unrecorded(&mut trends, share, levels, (asked, recorded));
-            }
+        if asked.done.is_empty() {
+            let hardly = asked.levels(&boundaries, &steady)?;
+            let ln_odds = hardly.ln_evidence(middle_percent, &steady)
+                - ageing.ln_evidence(middle_percent, beliefs);
+            add_unrecorded(&mut trends, ln + ln_odds, &hardly, (asked, recorded));
         }
     }
     Some(trends.mean())
 }
 
-/// Adds the trends beside one step more before each flight.
+/// Adds the trends beside one step more before each flight to one whose probability has this logarithm.
 fn add_unrecorded(
     trends: &mut Mixture,
-    share: f64,
+    ln: f64,
     levels: &Levels,
     (asked, recorded): (&Asked<'_>, &[usize]),
 ) {
@@ -69,32 +66,33 @@ fn add_unrecorded(
             continue;
         }
         let p = beliefs.change_within(years(step.first_flight) - years(step.first_flight - 1));
-        let odds = p / (1.0 - p) / sizes.len() as f64;
+        let ln_before = p.ln() - (-p).ln_1p() - (sizes.len() as f64).ln();
         for size in sizes {
-            trends.add(share * odds * step.ln_odds(size).exp(), step.trend(levels, size));
+            trends.add(ln + ln_before + step.ln_odds(size), step.trend(levels, size));
         }
     }
 }
 
-/// Estimates, each as probable as its weight says but for a common factor.
+/// Estimates, each with the logarithm of its probability but for a common term: of a step that stands out it is beyond what a number holds.
 #[derive(Debug, Default)]
 struct Mixture {
     parts: Vec<(f64, Estimate)>,
 }
 
 impl Mixture {
-    fn add(&mut self, weight: f64, estimate: Estimate) {
-        self.parts.push((weight, estimate));
+    fn add(&mut self, ln: f64, estimate: Estimate) {
+        self.parts.push((ln, estimate));
     }
 
     /// Mean and standard deviation.
     fn mean(&self) -> Estimate {
-        let total: f64 = self.parts.iter().map(|(weight, _)| weight).sum();
+        let most = self.parts.iter().map(|(ln, _)| *ln).fold(f64::NEG_INFINITY, f64::max);
         let sum = |of: &dyn Fn(&Estimate) -> f64| -> f64 {
-            self.parts.iter().map(|(weight, part)| weight * of(part)).sum::<f64>() / total
+            self.parts.iter().map(|(ln, part)| (ln - most).exp() * of(part)).sum()
         };
-        let value = sum(&|part| part.value);
-        let variance = sum(&|part| part.deviation.powi(2) + (part.value - value).powi(2));
+        let total = sum(&|_| 1.0);
+        let value = sum(&|part| part.value) / total;
+        let variance = sum(&|part| part.deviation.powi(2) + (part.value - value).powi(2)) / total;
         Estimate { value, deviation: variance.sqrt() }
     }
 }
