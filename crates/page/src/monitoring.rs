@@ -39,7 +39,8 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
         p.note {
             "Level, factor and kg/flight are of now, the last flight; the factor, to plan with, is that of the level, rounded up to \
              0.1 %. The report page of " code { "adapt" } " states the mean over all flights at the conditions flown, which is another \
-             figure where a tail has changed or flies other routes."
+             figure where a tail has changed or flies other routes. A trend is that between the events that " code { "--events" } " lists, \
+             and net of what was washed or repaired without being listed."
         }
         p.note {
             "First the tails of which a rule fired, or which have changed in the last 90 days of these flights, then what burns most \

@@ -69,7 +69,8 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     text.push_str(match rows {
         Rows::Tails => {
             "now: at the last flight. all: mean and standard deviation of all flights.\n\
-             Factor: of the level, to plan with, per cent of predicted, rounded up to 0.1.\n"
+             Factor: of the level, to plan with, per cent of predicted, rounded up to 0.1.\n\
+             Trend: beside the events that --events lists; it is net of other washes.\n"
         }
         Rows::Months => "Factor: mean of three months' fuel factors, rounded up to 0.1 %.\n",
     });
