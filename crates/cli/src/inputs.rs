@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use pipeline::summary::other_files_words;
+
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::standard_input;
 
@@ -63,11 +65,7 @@ pub(crate) fn collect(arguments: &[PathBuf], mapping: Option<&str>) -> Result<In
     if files.is_empty() {
         crate::terminal::tell_refused(&refused);
         let inputs: Vec<String> = arguments.iter().map(|path| show(path)).collect();
-        let skipped = match skipped {
-            0 => String::new(),
-            1 => ", 1 other file skipped".to_owned(),
-            n => format!(", {n} other files skipped"),
-        };
+        let skipped = other_files_words(skipped);
         let inputs = inputs.join(", ");
         return Err(match mapping {
             None => Failure::NoReports { inputs, skipped },

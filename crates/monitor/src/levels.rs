@@ -380,9 +380,8 @@ mod tests {
     use super::*;
     use crate::series::FlightDeviation;
 
-    /// Oracle: the same regression with dense matrices, columns slope, conditions and one level per piece.
-    #[test]
-    fn slope_steps_and_levels_are_those_of_dense_least_squares() {
+    /// Twelve flights in three pieces, which begin with flights 0, 4 and 9: days, deviations, weights, and the series.
+    fn twelve_flights() -> ([i64; 12], [f64; 12], [f64; 12], Series) {
         let days = [0, 3, 9, 20, 31, 60, 61, 80, 120, 200, 230, 365];
         let y = [0.1, 0.3, -0.2, 0.4, -0.8, -0.5, -0.9, -0.4, -0.6, 1.2, 1.4, 1.0];
         let weights = [4.0, 2.0, 1.0, 4.0, 3.0, 4.0, 4.0, 2.0, 4.0, 1.0, 4.0, 4.0];
@@ -390,7 +389,14 @@ mod tests {
             let time = Timestamp::from_second(86_400 * day).unwrap();
             FlightDeviation::of_segments(time, &[y]).unwrap()
         });
-        let without = Series::new(flights.collect()).unwrap();
+        let series = Series::new(flights.collect()).unwrap();
+        (days, y, weights, series)
+    }
+
+    /// Oracle: the same regression with dense matrices, columns slope, conditions and one level per piece.
+    #[test]
+    fn slope_steps_and_levels_are_those_of_dense_least_squares() {
+        let (days, y, weights, without) = twelve_flights();
         // The third does not vary.
         let conditions: [[f64; CONDITIONS]; 12] = core::array::from_fn(|k| {
             let number = |seed: usize| ((k * 7 + seed * 5) % 11) as f64;
@@ -407,14 +413,7 @@ mod tests {
     #[test]
     fn a_step_more_is_that_of_dense_least_squares() {
         const WIDTH: usize = 6;
-        let days = [0, 3, 9, 20, 31, 60, 61, 80, 120, 200, 230, 365];
-        let y = [0.1, 0.3, -0.2, 0.4, -0.8, -0.5, -0.9, -0.4, -0.6, 1.2, 1.4, 1.0];
-        let weights = [4.0, 2.0, 1.0, 4.0, 3.0, 4.0, 4.0, 2.0, 4.0, 1.0, 4.0, 4.0];
-        let flights = days.iter().zip(y).map(|(&day, y)| {
-            let time = Timestamp::from_second(86_400 * day).unwrap();
-            FlightDeviation::of_segments(time, &[y]).unwrap()
-        });
-        let series = Series::new(flights.collect()).unwrap();
+        let (days, y, weights, series) = twelve_flights();
         let beliefs = ChangeBeliefs::of_2026();
         let [believed, done_deviation] = beliefs.to_burn_less_percent;
         let done = [2, 7];

@@ -52,6 +52,13 @@ impl ChangeBeliefs {
         }
     }
 
+    /// The same of a tail that hardly ages.
+    #[must_use]
+    pub(crate) fn of_a_steady_tail(self) -> Self {
+        let slope_deviation_percent_per_year = self.small_slope_deviation_percent_per_year;
+        Self { slope_deviation_percent_per_year, ..self }
+    }
+
     /// The same of one engine of several: what changes is any of them, each as likely.
     #[must_use]
     pub fn of_an_engine(self, engines: usize) -> Self {

@@ -38,10 +38,7 @@ pub(super) fn step_instead(
     }
     let middle = Asked::new(series, weights, recorded, *beliefs).middle_percent;
     let ln_trend = levels.ln_evidence(middle, beliefs);
-    let steady = ChangeBeliefs {
-        slope_deviation_percent_per_year: beliefs.small_slope_deviation_percent_per_year,
-        ..*beliefs
-    };
+    let steady = beliefs.of_a_steady_tail();
     let in_gap = |first_flight: usize| {
         let flights = series.flights();
         let years = years_between(flights[first_flight - 1].time(), flights[first_flight].time());

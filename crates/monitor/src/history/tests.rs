@@ -25,10 +25,10 @@ fn the_trend_is_that_of_all_that_may_have_stepped() {
     let odds_of_a_step = (6.0 / DAYS_PER_YEAR).exp_m1();
     let mut parts: Vec<(f64, Estimate)> = Vec::new();
     for boundaries in [&[30][..], &[]] {
-        let believed: f64 = 1.0;
         for (beliefs, is_stated) in [(beliefs, true), (steady, false)] {
             let levels = Levels::fit(&series, &found.weights, boundaries, &beliefs).unwrap();
-            let share = believed * levels.ln_evidence(middle, &beliefs).exp();
+            // An event is a step as probably as none.
+            let share = levels.ln_evidence(middle, &beliefs).exp();
             if is_stated {
                 parts.push((share, levels.trend_percent_per_year()));
             }

@@ -2,7 +2,7 @@
 
 use super::{Asked, SteppedEvents, merged};
 use crate::levels::{Estimate, Levels};
-use crate::settings::{ChangeBeliefs, LEAST_SHARE_WITH_A_STEP};
+use crate::settings::LEAST_SHARE_WITH_A_STEP;
 
 /// The trend over every set S of events that may be steps, alone, and with one step more that nobody recorded, before any flight: what it
 /// would be counts as much as it is probable. With a step more, and where nothing was done to burn less, the tail may also be one that
@@ -13,7 +13,7 @@ use crate::settings::{ChangeBeliefs, LEAST_SHARE_WITH_A_STEP};
 /// with a step N(0, σ²) before flight k: p_S·½·p_k/(1 − p_k)·p(d | S, o, step)/p(d | S),  each of two σ      [monitoring.25]
 /// ```
 ///
-/// with `p_k` of [`ChangeBeliefs::change_within`] and σ of [`ChangeBeliefs::unrecorded_step_deviations_percent`]. `found` are first flights
+/// with `p_k` of [`crate::ChangeBeliefs::change_within`] and σ of [`crate::ChangeBeliefs::unrecorded_step_deviations_percent`]. `found` are first flights
 /// after changes, `recorded` those after events.
 ///
 /// # Source
@@ -24,10 +24,7 @@ pub(super) fn averaged(
     (found, recorded): (&[usize], &[usize]),
 ) -> Option<Estimate> {
     let Asked { ref beliefs, middle_percent, .. } = *asked;
-    let steady = ChangeBeliefs {
-        slope_deviation_percent_per_year: beliefs.small_slope_deviation_percent_per_year,
-        ..*beliefs
-    };
+    let steady = beliefs.of_a_steady_tail();
     let most = stepped.weighed.iter().map(|(_, ln)| *ln).fold(f64::NEG_INFINITY, f64::max);
     let mut trends = Mixture::default();
     for (set, ln) in &stepped.weighed {

@@ -4,7 +4,7 @@ use flight::{Segment, Timestamp};
 use monitor::CONDITIONS;
 
 use super::flights::{
-    MeanConditions, MonitoredFlight, flights_of, flights_with, monitored,
+    MeanConditions, MonitoredFlight, flights_of, flights_with, monitored, sort,
     with_those_without_segment,
 };
 use crate::evaluation::{BookEffects, TailResult, evaluate_book, evaluate_model};
@@ -99,7 +99,7 @@ impl TailDeviations {
     /// The learnt model knows how fuel flow depends on conditions; the book is the level from which is counted.
     #[must_use]
     pub fn of_flights(aircraft_type: &str, model: &str, mut flights: Vec<MonitoredFlight>) -> Self {
-        flights.sort_by(|one, other| (one.start, &one.flight).cmp(&(other.start, &other.flight)));
+        sort(&mut flights);
         let reference = MeanConditions::mean_of(flights.iter().map(|flight| flight.conditions));
         let over = flights
             .iter()

@@ -144,8 +144,13 @@ pub(super) fn with_those_without_segment(
             conditions: MeanConditions::default(),
         })
     }));
-    flights.sort_by(|one, other| (one.start, &one.flight).cmp(&(other.start, &other.flight)));
+    sort(&mut flights);
     flights
+}
+
+/// Puts flights in the order of flying.
+pub(super) fn sort(flights: &mut [MonitoredFlight]) {
+    flights.sort_by(|one, other| (one.start, &one.flight).cmp(&(other.start, &other.flight)));
 }
 
 /// The learning curve that flights hold.

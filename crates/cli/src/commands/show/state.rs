@@ -1,6 +1,5 @@
 //! What the `STATE.ron` of a folder names.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use pipeline::folder_state::{State, TailState};
@@ -18,18 +17,14 @@ pub(super) fn since(summary_path: &Path, summary: &Summary) -> String {
     let Some(state) = text.and_then(|text| State::from_text(&text).ok()) else {
         return String::new();
     };
-    let other = |tail: &&TailSummary| {
-        state.tails.get(&tail.tail).map_or(0, |now| now.summary.flights) != tail.flights
-    };
-    summary.tails.iter().filter(other).fold(String::new(), |mut words, tail| {
+    let words = |tail: &TailSummary| {
         let now = state.tails.get(&tail.tail).map_or(0, |now| now.summary.flights);
-        let _ = writeln!(
-            words,
-            "Since that run of adapt flights were forgotten: tail {} has learnt {now} now.",
-            tail.tail
-        );
-        words
-    })
+        (now != tail.flights).then(|| {
+            let tail = &tail.tail;
+            format!("Since that run of adapt flights were forgotten: tail {tail} has learnt {now} now.\n")
+        })
+    };
+    summary.tails.iter().filter_map(words).collect()
 }
 
 /// The tails of a state, each with its flights and its model.
