@@ -239,8 +239,8 @@ impl Summary {
         for tail in self.tails.iter().filter(|tail| tail.is_of_a_fit()) {
             let _ = writeln!(
                 text,
-                "{}: {} of {} taught this model: that it fits them is no forecast. The rows of `evaluate -o` are by the model before \
-                 it learnt each flight.",
+                "{}: {} of {} taught this model: that it fits them is no forecast. Where all are given, the rows of `evaluate -o` are \
+                 by the model before it learnt each flight (`predicted_by`).",
                 tail.tail,
                 tail.flights - tail.flights_new,
                 counted(tail.flights, "flight")
