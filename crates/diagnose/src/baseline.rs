@@ -120,8 +120,13 @@ impl BaselineRecord {
             every(quantity, numbers, "a finite number", |_| true)?;
         }
         let noise = &self.noise;
-        let factors = noise.within.iter().chain(&noise.between).chain([&noise.fuel_flow_with_n2]);
+        let factors = noise.within.iter().chain(&noise.between);
         every("noise factors", factors, "0 or more", |number| number >= 0.0)?;
+        // A factor on a covariance: flights may show one of the other sign.
+        let with_n2 = [&noise.fuel_flow_with_n2];
+        every("factor on the covariance of fuel flow and N2", with_n2, "a finite number", |_| {
+            true
+        })?;
         let variances = &self.standing_variances;
         every("variances of carried effects", variances, "0 or more", |number| number >= 0.0)?;
         let positive = |number| number > 0.0;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, Posterior, Search, SettingValues, tune};
 use flight::{Observation, ObservationVariance, Timestamp};
-use lut::{Outside, Table};
+use lut::{Outside, SmoothCell, Table};
 use perf_model::initial::observe_guide_point;
 use perf_model::model::NODE_WEIGHT_THRESHOLD;
 use perf_model::{Guide, InitialModel, PerformanceModel};
@@ -16,6 +16,9 @@ use super::GuideRecord;
 /// ```text
 /// CD_guide = CD_polynomial·(1 + x),   x by law bayes from the rows, each a flight of one segment          [bayes.14]
 /// ```
+///
+/// The polynomial is smooth between its nodes `[tables.10]`, as what comes of it is read: law `bayes`, whose table has chords
+/// there, is given each row's drag by as much less or more as chord and smooth surface differ.
 ///
 /// Six coefficients cannot hold a drag rise: beside the polynomial, a guide's own rows may be several per cent off, and most where
 /// flights go beyond the Mach numbers that have been flown. At nodes that no row tells the nearest x within the guide's range holds.
@@ -29,13 +32,15 @@ pub(super) fn with_drag_of_guide(
     for point in guide.points() {
         let row = observe_guide_point(model.aircraft(), point).ok()?;
         let total_kg_s = point.fuel_flow_total.to_kilograms_per_second();
+        let chord = chord_over_smooth(model.drag_table(), row.lift_coefficient, row.mach);
+        let drag_coefficient = row.drag_coefficient * chord.unwrap_or(1.0);
         rows.push(vec![Observation {
             time: Timestamp::UNIX_EPOCH,
             lift_coefficient: row.lift_coefficient,
             mach: row.mach,
-            drag_coefficient: row.drag_coefficient,
+            drag_coefficient,
             fuel_flow_total_kg_s: total_kg_s,
-            fuel_flow_per_drag_coefficient_kg_s: total_kg_s / row.drag_coefficient,
+            fuel_flow_per_drag_coefficient_kg_s: total_kg_s / drag_coefficient,
             variance: ObservationVariance { segment: 0.0, flight: 0.0 },
         }]);
     }
@@ -65,6 +70,14 @@ const SEARCH: Search = Search {
 };
 /// Degrees of freedom of rows that are printed and not measured: none is weighed down.
 const NO_OUTLIERS: f64 = 1e6;
+
+/// Bilinear value of a table over the smooth one; `None` outside it.
+fn chord_over_smooth(table: &Table, lift_coefficient: f64, mach: f64) -> Option<f64> {
+    let grid = table.grid();
+    let cell = grid.locate(lift_coefficient, mach, Outside::Error).ok()?;
+    let smooth = SmoothCell::locate(grid, lift_coefficient, mach).ok()?;
+    Some(table.interpolate(&cell) / smooth.value_of(table))
+}
 
 /// Nodes of the cells that rows lie in: those that a row says something of.
 fn told_nodes(table: &Table, rows: &[Vec<Observation>]) -> Vec<bool> {
