@@ -37,6 +37,7 @@ pub(crate) fn flown(variable: Variable, response: &Response, references: &Effect
 #[serde(deny_unknown_fields)]
 pub(crate) struct Hats {
     pub(crate) knots: Vec<f64>,
+    /// What is subtracted from each hat: its mean over the values, or its value where a sum is to be zero.
     pub(crate) means: Vec<f64>,
 }
 
@@ -73,6 +74,15 @@ impl Hats {
         }
         hats.means = means;
         Some(hats)
+    }
+
+    /// The same hats, of which any sum is zero at a value in place of on average; at the nearest end where it lies outside.
+    pub(crate) fn zero_at(mut self, value: f64) -> Self {
+        let (index, upper) = self.place(value);
+        self.means.fill(0.0);
+        self.means[index] = 1.0 - upper;
+        self.means[index + 1] = upper;
+        self
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -124,6 +134,22 @@ impl Scaled {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hats_are_zero_where_they_are_asked_to_be() {
+        let values: Vec<f64> = (0..=10).map(f64::from).collect();
+        let hats = Hats::at_quantiles(&values, &[0.0, 0.5, 1.0]).unwrap();
+        let mut row = [0.0; 3];
+        for (zero, held) in [(4.0, 4.0), (-7.0, 0.0), (12.0, 10.0)] {
+            let hats = hats.clone().zero_at(zero);
+            hats.write(held, &mut row);
+            assert_eq!(row, [0.0; 3], "{zero}");
+            hats.write(2.5, &mut row);
+            // A constant is one of their sums still, less what it is at that value.
+            assert!(row.iter().sum::<f64>().abs() < 1e-15);
+            assert!((5.0 * row[1] + 10.0 * row[2] - (2.5 - held)).abs() < 1e-12, "{row:?}");
+        }
+    }
 
     #[test]
     fn hats_sum_to_zero_and_interpolate() {

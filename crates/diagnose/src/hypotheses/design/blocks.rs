@@ -94,6 +94,10 @@ pub(super) fn agnostic_blocks(
         let hats = values(variable).and_then(|values| match variable {
             // A switch has no values between off and on that a bend could be at.
             Variable::AntiIce => Hats::at_quantiles(&values, &[0.0, 1.0]),
+            // What changes with time has not yet changed at the date of the model.
+            Variable::Date => {
+                Hats::at_quantiles(&values, &AGNOSTIC_QUANTILES).map(|hats| hats.zero_at(0.0))
+            }
             _ => Hats::at_quantiles(&values, &AGNOSTIC_QUANTILES),
         });
         let Some(hats) = hats else { continue };
