@@ -8,10 +8,11 @@ use diagnose::{WholeModel, WholePrediction};
 use effects::ExtendedModel;
 use flight::{Observation, Segment, Timestamp};
 use lut::{Outside, SmoothCell, Table};
+use units::PressureAltitude;
 
 use crate::fuel_factor;
 use crate::learning::{LearningCurve, curve_of};
-use crate::model_file::ModelFile;
+use crate::model_file::{GuidePlace, ModelFile};
 use crate::not_evaluated;
 use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
@@ -254,8 +255,8 @@ pub fn evaluate<'s>(
         .collect()
 }
 
-/// What the book predicts for each segment: the drag of the guide's own rows, smooth between the nodes (`[bayes.14]`,
-/// `[tables.10]`), with or without the effects that the model contains.
+/// What the book predicts for each segment: the guide's own rows as a drag that is smooth between the nodes, times a factor by
+/// level (`[bayes.16]`, `[tables.10]`), with or without the effects that the model contains.
 ///
 /// A polynomial through those rows, and the chords of a table of it, are up to several per cent off, and what an aircraft burns more
 /// than its book, or a flight management system multiplies, is counted from the guide. A file that does not keep those rows has the
@@ -277,7 +278,7 @@ pub fn evaluate_book(
         return evaluate(book, book.drag_table(), segments);
     }
     let of_segment = |segment: &Segment| match book.observe(segment) {
-        Ok(observation) => Some(by_book(book.drag_table(), segment, &observation)),
+        Ok(observation) => Some(by_book(model, book.drag_table(), segment, &observation)),
         Err(_) => without_errors(book, segment),
     };
     segments.iter().map(of_segment).collect()
@@ -317,7 +318,7 @@ fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Seg
         let (by_initial, by_learnt, by_guide) = if let Ok(observation) = initial.observe(segment) {
             let by = |table| Some(evaluated(table, segment, &observation));
             let by_initial = by(table);
-            let by_guide = book.map(|book| by_book(book, segment, &observation));
+            let by_guide = book.map(|book| by_book(model, book, segment, &observation));
             (by_initial, learnt.and_then(by), by_guide.or(by_initial))
         } else {
             let state = without_errors(initial, segment);
@@ -332,9 +333,25 @@ fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Seg
     found
 }
 
-fn by_book(book: &Table, segment: &Segment, observation: &Observation) -> Evaluated {
-    let cell = SmoothCell::locate(book.grid(), observation.lift_coefficient, observation.mach);
-    let error = cell.ok().map(|cell| paper::error_percent_of(cell.value_of(book), observation));
+/// By the guide with a factor by level where the model has it, else by this drag of its rows.
+fn by_book(
+    model: &ModelFile,
+    drag_table: &Table,
+    segment: &Segment,
+    observation: &Observation,
+) -> Evaluated {
+    let cell =
+        SmoothCell::locate(drag_table.grid(), observation.lift_coefficient, observation.mach);
+    let place = GuidePlace {
+        lift_coefficient: observation.lift_coefficient,
+        mach: observation.mach,
+        pressure_altitude: PressureAltitude::meters(segment.means.pressure_altitude_m),
+    };
+    let by_rows = |cell: SmoothCell| match &model.guide_book {
+        Some(book) => book.drag_coefficient(&cell, place),
+        None => cell.value_of(drag_table),
+    };
+    let error = cell.ok().map(|cell| paper::error_percent_of(by_rows(cell), observation));
     with_error(segment, observation, error)
 }
 

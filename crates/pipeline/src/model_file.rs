@@ -9,11 +9,13 @@ mod applied;
 mod differences;
 mod error;
 mod guide_drag;
+mod guide_levels;
 mod text;
 
 pub use applied::{AppliedRecord, DiagnosisRecord};
 use differences::told_against;
 pub use error::{ModelTextError, ModelValueError};
+pub use guide_levels::{GuideBook, GuideLevel, GuideLevelError, GuideLevels, GuidePlace};
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -52,6 +54,9 @@ pub struct ModelFile {
     pub applied: Vec<AppliedRecord>,
     /// The initial model with the drag of the guide's own rows; see [`reference`](Self::reference).
     pub by_guide: Option<Box<ExtendedModel>>,
+    /// The guide with a factor by level; `None` where levels say nothing, and in files of programs that did not keep it:
+    /// then the drag of `by_guide` is the book.
+    pub guide_book: Option<Box<GuideBook>>,
 }
 
 /// What the initial model's guide was like, and how well the polynomial fits it.
@@ -236,7 +241,8 @@ impl ModelFile {
             residual_rms: initial.fit.residual_rms,
             condition_number: initial.fit.condition_number,
         };
-        let by_guide = guide_drag::with_drag_of_guide(initial, guide, &record);
+        let found = guide_drag::with_drag_of_guide(initial, guide, &record);
+        let (by_guide, guide_book) = found.unzip();
         if by_guide.is_none() {
             tracing::warn!(
                 "the guide's rows make no drag table of their own: what is learnt refers to the polynomial"
@@ -249,6 +255,7 @@ impl ModelFile {
             learnt: None,
             applied: Vec::new(),
             by_guide: by_guide.map(|model| Box::new(model.into())),
+            guide_book: guide_book.flatten().map(Box::new),
         }
     }
 

@@ -126,9 +126,9 @@ fn deviations_are_those_of_the_segments() {
     let first: f64 = flights["before_learning_percent"][0].parse().unwrap();
     let expected = of_initial(&flights["flight"][0]);
     assert!((first - expected).abs() < 1e-9, "{first} against {expected}");
-    // The book is several per cent too optimistic; what the model knew after the first flights is not.
+    // The book is some per cent too optimistic, at each level alike; what the model knew after the first flights is not.
     let last: f64 = flights["before_learning_percent"].last().unwrap().parse().unwrap();
-    assert!(shown.last().unwrap().abs() > 2.0 && last.abs() < 1.5, "{shown:?} {last}");
+    assert!(mean > 1.5 && last.abs() < 0.5 * mean, "{shown:?} {last}");
 }
 
 #[test]

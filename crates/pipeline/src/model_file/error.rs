@@ -7,7 +7,7 @@ use effects::EffectModelError;
 use lut::TableError;
 use perf_model::{AircraftError, ModelError};
 
-use super::FORMAT;
+use super::{FORMAT, GuideLevelError};
 use crate::addition_record::UnknownEffect;
 use crate::whole_model::BeliefError;
 
@@ -96,6 +96,9 @@ pub enum ModelValueError {
     /// The aircraft.
     #[error(transparent)]
     Aircraft(#[from] AircraftError),
+    /// A level of the guide.
+    #[error(transparent)]
+    GuideLevel(#[from] GuideLevelError),
     /// A table.
     #[error(transparent)]
     Table(#[from] TableError),

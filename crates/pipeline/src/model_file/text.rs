@@ -17,8 +17,8 @@ use sha2::{Digest, Sha256};
 use super::applied::{AppliedText, layers_of};
 use super::error::{ModelTextError, ModelValueError};
 use super::{
-    AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
-    PaperSettings, PaperState,
+    AppliedRecord, FORMAT, GuideBook, GuideLevel, GuideLevels, GuideRecord, LawSettings, LawState,
+    Learnt, LedgerEntry, ModelFile, PaperSettings, PaperState,
 };
 use crate::checksum::hexadecimal;
 use crate::condition_means::ConditionMeans;
@@ -73,6 +73,20 @@ struct InitialText {
     /// By the rows of the guide in place of the polynomial through them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drag_coefficient_of_guide: Option<Vec<f64>>,
+    /// The guide with a factor by level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    book_of_guide: Option<BookText>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BookText {
+    drag_coefficient: Vec<f64>,
+    lift_coefficient: (f64, f64),
+    mach: (f64, f64),
+    /// Pressure altitude in m, and drag there over that of the table, less 1: in the middle, and how much more at the largest
+    /// lift coefficient and Mach number.
+    levels: Vec<(f64, [f64; 3])>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -238,11 +252,23 @@ fn document_of(model: &ModelFile) -> Document {
                 .by_guide
                 .as_deref()
                 .map(|model| model.drag_table().values().to_vec()),
+            book_of_guide: model.guide_book.as_deref().map(book_to_text),
         },
         settings: model.settings,
         learnt: model.learnt.as_ref().map(learnt_to_text),
         effects: model.applied.iter().map(AppliedText::from).collect(),
         checksum: String::new(),
+    }
+}
+
+fn book_to_text(book: &GuideBook) -> BookText {
+    let levels = book.levels.levels().iter();
+    let [lift_coefficient, mach] = book.levels.ranges();
+    BookText {
+        lift_coefficient,
+        mach,
+        drag_coefficient: book.drag_table.values().to_vec(),
+        levels: levels.map(|level| (level.pressure_altitude_m, level.shares)).collect(),
     }
 }
 
@@ -301,6 +327,17 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
             Some(model.map_err(|error| value(FIELD, error))?)
         }
     };
+    let guide_book = match document.initial.book_of_guide {
+        None => None,
+        Some(BookText { drag_coefficient, lift_coefficient, mach, levels }) => {
+            const FIELD: &str = "initial.book_of_guide";
+            let level = |(pressure_altitude_m, shares)| GuideLevel { pressure_altitude_m, shares };
+            let levels =
+                GuideLevels::new([lift_coefficient, mach], levels.into_iter().map(level).collect());
+            let levels = levels.map_err(|error| value(FIELD, error))?;
+            Some(Box::new(GuideBook { drag_table: table(FIELD, drag_coefficient)?, levels }))
+        }
+    };
     let applied = document.effects.into_iter().map(AppliedRecord::try_from);
     let applied: Vec<AppliedRecord> =
         applied.collect::<Result<_, _>>().map_err(|error| value("effects", error))?;
@@ -321,7 +358,8 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
             Some(Learnt { tail, criteria, law, references, baseline, ledger })
         }
     };
-    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied, by_guide })
+    let guide = document.guide;
+    Ok(ModelFile { initial, guide, settings, learnt, applied, by_guide, guide_book })
 }
 
 /// A baseline of its record, with what was believed of the initial table.

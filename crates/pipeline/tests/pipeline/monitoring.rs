@@ -26,6 +26,7 @@ fn model() -> ModelFile {
         learnt: None,
         applied: Vec::new(),
         by_guide: None,
+        guide_book: None,
     }
 }
 
