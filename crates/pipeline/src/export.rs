@@ -28,6 +28,18 @@ pub(crate) fn informed(model: &ModelFile) -> Vec<bool> {
         .collect()
 }
 
+/// What the table of a model that has learnt nothing, the polynomial through its guide's rows, misses of the drag of these rows at
+/// the nodes within the guide, %: root mean square, and the largest; `None` once a segment has taught it, and where the file does
+/// not keep the rows.
+#[must_use]
+pub fn rows_missed(model: &ModelFile) -> Option<[f64; 2]> {
+    let rows = model.untaught_rows()?.drag_table().values();
+    let nodes = model.initial.drag_table().values().iter().zip(rows);
+    let nodes = nodes.zip(model.initial.extrapolated()).filter(|(_, extrapolated)| !**extrapolated);
+    let percents = nodes.map(|((polynomial, row), _)| 100.0 * (polynomial / row - 1.0));
+    rms_and_largest(&percents.collect::<Vec<f64>>())
+}
+
 /// Root mean square of what an export misses, and the largest of it without its sign; `None` of nothing.
 pub(crate) fn rms_and_largest(percents: &[f64]) -> Option<[f64; 2]> {
     let largest = percents.iter().map(|percent| percent.abs()).reduce(f64::max)?;

@@ -25,6 +25,11 @@ pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     if let Some(left_out) = export::remainder_left_out(&model) {
         tracing::warn!("drag alone, as by `predict --table-only`: {}", left_out.words());
     }
+    if let Some([rms, largest]) = export::rows_missed(&model) {
+        tracing::warn!(
+            "the table of a model that has learnt nothing is the polynomial through its guide's rows, which misses their drag by {rms:.2} % rms and {largest:.2} % at most; `optimum` plans by the rows"
+        );
+    }
     let of_model =
         |error: &dyn std::fmt::Display| Failure::bad_file(&arguments.model, error.to_string());
     let output = arguments.output.as_deref();

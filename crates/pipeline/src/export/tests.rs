@@ -96,6 +96,21 @@ fn what_a_table_leaves_out_is_stated() {
     assert!(!openap(&model(), None).unwrap().to_yaml().contains("left out"));
 }
 
+/// Oracle: the rows of the guide at a node, by hand from both tables.
+#[test]
+fn what_the_polynomial_misses_of_the_rows_is_stated_until_a_segment_is_learnt() {
+    let [rms, largest] = rows_missed(&model()).unwrap();
+    let tables = (model().initial.drag_table().clone(), model().by_guide.unwrap());
+    let inside = model().initial.extrapolated().iter().position(|beyond| !beyond).unwrap();
+    let ratio = tables.0.value_at_node(inside) / tables.1.drag_table().value_at_node(inside);
+    assert!(
+        largest >= 100.0 * (ratio - 1.0).abs() && largest > rms && rms > 0.1,
+        "{rms} {largest}"
+    );
+    assert_eq!(rows_missed(&crate::prediction::tests::whole()), None);
+    assert_eq!(rows_missed(&ModelFile { by_guide: None, ..model() }), None);
+}
+
 /// A table that is the polynomial's own misses nothing; what law `paper` learnt node by node is no polynomial.
 #[test]
 fn the_miss_of_a_polynomial_is_that_of_its_nodes() {
