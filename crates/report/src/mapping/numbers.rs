@@ -68,6 +68,10 @@ impl Numbers {
         Self { stretches: Vec::new(), inputs }
     }
 
+    pub(super) const fn inputs(&self) -> usize {
+        self.inputs
+    }
+
     /// About the bytes that a row takes.
     pub(super) const fn bytes_of_row(&self) -> usize {
         self.inputs * size_of::<f64>()

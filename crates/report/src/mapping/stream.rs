@@ -151,13 +151,13 @@ impl Stream {
 
     /// The flights that are over where reading stops before the recording's end.
     pub fn stop(&mut self) -> Vec<MappedFlight> {
-        self.assembly.stop();
+        self.assembly.stop(&self.layout);
         self.ended()
     }
 
     /// The flights that end with the recording.
     pub fn finish(&mut self) -> Vec<MappedFlight> {
-        self.assembly.finish();
+        self.assembly.finish(&self.layout);
         self.ended()
     }
 

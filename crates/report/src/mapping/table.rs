@@ -1,5 +1,6 @@
 //! Delimited text into recordings: where a recording has what its mapping names, and positions for refusals.
 
+mod ahead;
 mod batch;
 mod clock;
 mod columns;

@@ -234,6 +234,44 @@ fn a_row_far_ahead_costs_itself() {
     }
 }
 
+/// Rows ahead are left out, however many, where more rows go on behind them; rows that go back are where they are fewer.
+#[test]
+fn of_rows_ahead_and_rows_behind_the_fewer_are_left_out() {
+    let lenient = MAPPING.replace("format: 1,", "format: 1, bad_rows: LeaveRowOut,");
+    let split = lenient.replace("format: 1,", "format: 1, new_flight_after_s: 1800,");
+    let mut rows = fleet();
+    rows.retain(|(tail, flight, _)| (*tail, *flight) == (0, 1));
+    let all = rows.len();
+    // Only the time of a row is another one.
+    let moved = |range: core::ops::Range<usize>, later_s: usize| -> Vec<String> {
+        let line = |(at, (tail, flight, second)): (usize, &(usize, usize, usize))| {
+            let later_s = if range.contains(&at) { later_s } else { 0 };
+            let time = row(*tail, *flight, second + later_s)[..20].to_owned();
+            time + &row(*tail, *flight, *second)[20..]
+        };
+        rows.iter().enumerate().map(line).collect()
+    };
+    for (mapping, changed, left_out) in [
+        (&lenient, moved(201..203, 31_536_000), 201..203),
+        (&lenient, moved(201..221, 3_600), 201..221),
+        (&split, moved(201..221, 3_600), 201..221),
+        (&split, moved(201..221, 31_536_000), 201..221),
+        (&lenient, moved(201..all - 20, 31_536_000), all - 20..all),
+        (&lenient, moved(all - 20..all, 3_600), 0..0),
+    ] {
+        let mut without = changed.clone();
+        without.drain(left_out.clone());
+        let [found, expected] = [changed, without].map(|lines| {
+            read(mapping, &(NAMES.to_owned() + &lines.concat()), Limits::default()).unwrap()
+        });
+        assert_eq!(by_flight(&found), by_flight(&expected), "{left_out:?}");
+        assert_eq!(found[0].left_out, left_out.len());
+        let finding = found[0].findings.iter().find(|one| one.code == "mapped-rows-bad");
+        let line = (!left_out.is_empty()).then_some(left_out.start + 2);
+        assert_eq!(finding.and_then(|one| one.line), line);
+    }
+}
+
 #[test]
 fn beyond_a_limit_a_flight_that_comes_back_is_refused() {
     let rows: Vec<_> = (0..40).flat_map(|s| (0..6).map(move |tail| (tail, 1, s))).collect();

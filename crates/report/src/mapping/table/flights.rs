@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::ahead::LeftOut;
 use super::clock::Clock;
 #[cfg(test)]
 use super::open::Limits;
@@ -58,16 +59,16 @@ impl Assembly {
         self.numbers = Arc::new(core::mem::take(&mut rows.block));
         let added = self.add_piece(layout, &rows);
         if added.is_err() {
-            self.stop();
+            self.stop(layout);
         }
         added
     }
 
     /// Reading stops before the recording's end: gives out the flights that are over.
-    pub(in crate::mapping) fn stop(&mut self) {
+    pub(in crate::mapping) fn stop(&mut self, layout: &Layout) {
         if !self.open.alternates {
             self.open.give_out_all();
-            self.end_given_out();
+            self.end_given_out(layout);
         }
     }
 
@@ -98,7 +99,7 @@ impl Assembly {
                     recording.left_out += 1;
                     recording.first_left_out.get_or_insert(*line);
                 }
-                Event::Bad(refusal) => self.leave_out(layout, Refusal::clone(refusal))?,
+                Event::Bad(refusal) => self.leave_out(layout, (1, Refusal::clone(refusal)))?,
             }
         }
         self.add_rows(layout, rows, from..rows.times.len())
@@ -110,11 +111,11 @@ impl Assembly {
     }
 
     /// Ends all flights.
-    pub(in crate::mapping) fn finish(&mut self) {
+    pub(in crate::mapping) fn finish(&mut self, layout: &Layout) {
         self.open.give_out_all();
-        self.end_given_out();
+        self.end_given_out(layout);
         if let Some(current) = self.current.take() {
-            self.end_flight(*current);
+            self.end_flight(layout, *current);
         }
     }
 
@@ -128,7 +129,10 @@ impl Assembly {
         Refusal { line: self.end.0.max(1), column: self.end.1 + 1, found, kind }
     }
 
-    fn end_flight(&mut self, recording: Recording) {
+    fn end_flight(&mut self, layout: &Layout, mut recording: Recording) {
+        if let Some(left_out) = recording.decide(layout, true) {
+            recording.leave_out(left_out);
+        }
         self.longest = self.longest.max(recording.time_s.len());
         self.rows += recording.time_s.len();
         self.bad += recording.bad;
@@ -138,9 +142,9 @@ impl Assembly {
         self.ended.push(recording);
     }
 
-    fn end_given_out(&mut self) {
+    fn end_given_out(&mut self, layout: &Layout) {
         for recording in self.open.given_out() {
-            self.end_flight(recording);
+            self.end_flight(layout, recording);
         }
     }
 
@@ -179,7 +183,7 @@ impl Assembly {
         next.keep(&rows.piece)?;
         self.open.settle(&clock, &next);
         self.current = Some(next);
-        self.end_given_out();
+        self.end_given_out(layout);
         Ok(())
     }
 
@@ -196,7 +200,7 @@ impl Assembly {
             let clock = self.clock.unwrap_or_else(|| Clock::new(&layout.plan));
             self.open.stop(before, false, &clock);
             self.open.settle(&clock, &next);
-            self.end_given_out();
+            self.end_given_out(layout);
         }
         self.current = Some(next);
         Ok(())
@@ -207,15 +211,13 @@ impl Assembly {
         self.current.get_or_insert_with(|| Recording::new(Arc::default(), layout.plan.inputs.len()))
     }
 
-    fn leave_out(&mut self, layout: &Layout, refusal: Refusal) -> Result<(), Refusal> {
+    fn leave_out(&mut self, layout: &Layout, left_out: LeftOut) -> Result<(), Refusal> {
         // A recording that breaks off in a row is still being copied: its last flight is not whole.
-        let is_cut_off = matches!(refusal.kind, RefusalKind::LastRowUnfinished { .. });
+        let is_cut_off = matches!(left_out.1.kind, RefusalKind::LastRowUnfinished { .. });
         if is_cut_off || layout.plan.bad_rows == BadRows::Refuse {
-            return Err(refusal);
+            return Err(left_out.1);
         }
-        let recording = self.current(layout);
-        recording.bad += 1;
-        recording.first_bad.get_or_insert(refusal);
+        self.current(layout).leave_out(left_out);
         Ok(())
     }
 
@@ -244,12 +246,9 @@ impl Assembly {
             let previous_s = recording.time_s.last().copied();
             let gap_s = previous_s.map_or(0.0, |previous| time_s - previous);
             let is_gap = layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s);
-            // A gap behind which the next row goes back is none: its row is left out with that one.
-            let mut next_s = || {
-                let next = (row + 1 < range.end).then_some(row + 1)?;
-                Some(recording.seconds(layout, &rows.times, next))
-            };
-            if is_gap && next_s().is_none_or(|next_s| next_s > time_s) {
+            // A gap behind which rows go back is none: one of the two is left out.
+            let behind = (time_s, row + 1..range.end);
+            if is_gap && !recording.is_ahead_for_a_while(layout, &rows.times, behind) {
                 recording.extend(read, from..row);
                 from = row;
                 let texts = Arc::clone(&recording.texts);
@@ -259,17 +258,23 @@ impl Assembly {
                 && time_s <= previous
             {
                 recording.extend(read, from..row);
-                from = row + 1;
-                if !recording.last_is_ahead_of(time_s, layout) {
+                from = row;
+                if !recording.goes_on_at(time_s, layout) {
+                    from = row + 1;
                     let refusal = not_increasing(layout, rows, row, previous);
-                    self.leave_out(layout, refusal)?;
+                    self.leave_out(layout, (1, refusal))?;
                     continue;
                 }
-                from = row;
-                let refusal = recording.take_last(layout, time_s);
-                self.leave_out(layout, refusal)?;
             }
-            self.current(layout).time_s.push(time_s);
+            let recording = self.current(layout);
+            recording.time_s.push(time_s);
+            if recording.is_undecided() {
+                recording.extend(read, from..row + 1);
+                from = row + 1;
+                if let Some(left_out) = recording.decide(layout, false) {
+                    self.leave_out(layout, left_out)?;
+                }
+            }
         }
         self.current(layout).extend(read, from..range.end);
         Ok(())

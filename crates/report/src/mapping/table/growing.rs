@@ -5,20 +5,15 @@ use std::sync::Arc;
 use flight::Timestamp;
 
 use super::batch::instant_of;
-use super::flights::field_of;
 use super::rows::{Rows, Times};
 use super::{Layout, Recording};
 use crate::decode::MAXIMUM_TEXT_BYTES;
-use crate::mapping::file::BadRows;
 use crate::mapping::numbers::Block;
 use crate::mapping::pieces::Piece;
 use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 const HALF_A_DAY_S: f64 = 43_200.0;
-/// Where a recording goes back behind a step of more than this, it is the time before which is wrong and not those behind, s: clocks
-/// are set back by less. Our choice.
-const FAR_AHEAD_S: f64 = 600.0;
 
 impl Recording {
     /// Keeps a piece that holds rows of this flight: a refusal needs the text of its line.
@@ -41,30 +36,6 @@ impl Recording {
             });
         }
         Ok(())
-    }
-
-    /// Whether the last row is far ahead of the one before, and of this time, which follows that one.
-    pub(super) fn last_is_ahead_of(&self, time_s: f64, layout: &Layout) -> bool {
-        // A time of day that is ahead may have passed midnight.
-        let is_of_day = matches!(layout.plan.time, TimeForm::TimeOfDay { .. });
-        match self.time_s.as_slice() {
-            [.., before, last] if !is_of_day && layout.plan.bad_rows == BadRows::LeaveRowOut => {
-                last - before > FAR_AHEAD_S && time_s > *before
-            }
-            _ => false,
-        }
-    }
-
-    /// Takes the last row away, behind which the flight goes on at a time before it.
-    pub(super) fn take_last(&mut self, layout: &Layout, next_s: f64) -> Refusal {
-        let line = self.lines.last().unwrap_or_default();
-        let text = self.line(line).into_owned();
-        let found = Found::text(&field_of(layout, &text, layout.fields.time));
-        self.time_s.pop();
-        self.numbers.pop();
-        self.lines.pop();
-        let kind = RefusalKind::TimeAhead { next: next_s, unit: "s" };
-        layout.refuse_field((line, &text), layout.fields.time, found, kind)
     }
 
     /// Everything but the times of rows.
@@ -90,6 +61,7 @@ impl Recording {
         // The first row sets the origin.
         let first_s = match times {
             Times::OfDay(_) => return false,
+            _ if self.is_undecided() => return false,
             _ => self.seconds(layout, times, range.start),
         };
         self.time_s.push(first_s);

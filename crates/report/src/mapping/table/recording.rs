@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use flight::Timestamp;
 
+use super::ahead::Ahead;
 use super::line_numbers::LineNumbers;
 use crate::mapping::numbers::{Numbers, retain};
 use crate::mapping::pieces::Piece;
@@ -41,6 +42,8 @@ pub(in crate::mapping) struct Recording {
     /// Midnights passed, and the last time of day.
     pub(in crate::mapping) days: f64,
     pub(in crate::mapping) last_time_of_day_s: f64,
+    /// Rows that are ahead of the last ones; these are undecided.
+    pub(super) ahead: Option<Ahead>,
 }
 
 impl Recording {
@@ -61,6 +64,7 @@ impl Recording {
             first_bad: None,
             days: 0.0,
             last_time_of_day_s: f64::NEG_INFINITY,
+            ahead: None,
         })
     }
 
