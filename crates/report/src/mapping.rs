@@ -152,6 +152,8 @@ fn unit_names(column: Column) -> String {
 
 /// Time without a row after which another flight may have begun, s: turnarounds take no less. Our choice.
 const SHORTEST_GAP_S: f64 = 1200.0;
+/// An aircraft that is lower has landed, or is about to, or has just begun to climb. Our choice.
+const LOW_M: f64 = 10_000.0 * units::convert::METERS_PER_FOOT;
 
 /// Rows of which one altitude may be out of its range and costs no more than its row. Our choice, as for gross masses.
 const ROWS_FOR_ONE_ALTITUDE: u64 = 20;

@@ -222,6 +222,11 @@ pub enum RefusalKind {
         /// The longest such time within a flight, s.
         longest_s: f64,
     },
+    /// A start mass that is another one further on in a flight.
+    StartMassChanges {
+        /// The one before, kg.
+        before_kg: f64,
+    },
     /// A mass at or below zero.
     MassNotPositive {
         /// Which: `ZFW`, `FOB` or `gross mass`.

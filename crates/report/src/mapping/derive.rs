@@ -5,6 +5,7 @@ mod flow;
 mod load;
 mod masses;
 mod rows;
+mod start;
 mod told;
 
 use core::ops::Range;
@@ -118,6 +119,8 @@ struct Load {
     largest_rise_kg: Option<f64>,
     /// Rows whose fuel flow was not believed where it was integrated.
     bridged: usize,
+    /// What may be wrong with a start mass: code and words.
+    doubts: Vec<(&'static str, String)>,
 }
 
 struct Part<'p> {

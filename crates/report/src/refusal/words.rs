@@ -74,6 +74,7 @@ impl RefusalKind {
             Self::TimeAhead { .. } => "time-ahead",
             Self::FuelUsedFalls { .. } => "fuel-used-falls",
             Self::FlowOverGap { .. } => "flow-over-gap",
+            Self::StartMassChanges { .. } => "start-mass-changes",
             Self::MassNotPositive { .. } => "mass-not-positive",
             Self::LastRowUnfinished { .. } => "last-row-unfinished",
             Self::GzipTruncated => "gzip-truncated",
@@ -150,6 +151,9 @@ impl fmt::Display for RefusalKind {
                 write_fuel_fall(f, (*largest, *tolerance, unit), *gap_s)
             }
             Self::FlowOverGap { longest_s } => write_longest_gap(f, *longest_s),
+            Self::StartMassChanges { before_kg } => {
+                write!(f, "one start mass in a flight, {before_kg} kg{ANOTHER_FLIGHT}")
+            }
             Self::MassNotPositive { mass } => write!(f, "{mass} above zero"),
             Self::LastRowUnfinished { expected } => {
                 write!(f, "a complete row of {expected} fields and a line end")

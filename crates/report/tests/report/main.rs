@@ -7,6 +7,7 @@ mod mapping_forms;
 mod mapping_slips;
 mod reading;
 mod refusals;
+mod start_masses;
 mod streaming;
 mod tables;
 mod writing;

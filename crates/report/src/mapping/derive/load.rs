@@ -11,7 +11,7 @@ use crate::mapping::plan::{Conversion, Load as LoadSource, MassPlan};
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 /// A counter of fuel used may fall by this much.
-const FUEL_USED_STEP_KG: f64 = 0.5;
+pub(super) const FUEL_USED_STEP_KG: f64 = 0.5;
 const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
 
 impl Part<'_> {
@@ -39,6 +39,7 @@ impl Part<'_> {
                     fuel_used_kg: series.values,
                     largest_rise_kg: None,
                     bridged: 0,
+                    doubts: Vec::new(),
                 })
             }
         }
@@ -55,13 +56,8 @@ impl Part<'_> {
             LoadSource::Known(mass) => return Ok(*mass),
             LoadSource::Columns(conversions) => conversions,
         };
-        let at = |row: usize| self.sum_kg(conversions, row);
-        let sent = |row: &usize| at(*row).is_finite() && burnt_kg(*row).is_finite();
-        let rows = 0..self.recording.time_s.len();
-        let first = rows.clone().find(sent).unwrap_or(self.rows.at(0));
-        let last = rows.rev().find(sent).unwrap_or(first);
-        let falls = at(last) < at(first) - FUEL_USED_STEP_KG;
-        let value = at(first) + if falls { burnt_kg(first) } else { 0.0 };
+        let (first, falls) = self.first_sent(conversions, &burnt_kg);
+        let value = self.sum_kg(conversions, first) + if falls { burnt_kg(first) } else { 0.0 };
         if value > 0.0 {
             return Ok(Mass::kilograms(value));
         }
@@ -70,8 +66,22 @@ impl Part<'_> {
         Err(self.refuse(0, input_of(conversions), found, kind))
     }
 
+    /// The first row that has a mass of the load sheet, and whether that falls further on.
+    pub(super) fn first_sent(
+        &self,
+        conversions: &[Conversion],
+        burnt_kg: impl Fn(usize) -> f64,
+    ) -> (usize, bool) {
+        let at = |row: usize| self.sum_kg(conversions, row);
+        let sent = |row: &usize| at(*row).is_finite() && burnt_kg(*row).is_finite();
+        let rows = 0..self.recording.time_s.len();
+        let first = rows.clone().find(sent).unwrap_or(self.rows.at(0));
+        let last = rows.rev().find(sent).unwrap_or(first);
+        (first, at(last) < at(first) - FUEL_USED_STEP_KG)
+    }
+
     /// The sum of columns in a row of the recording.
-    fn sum_kg(&self, conversions: &[Conversion], row: usize) -> f64 {
+    pub(super) fn sum_kg(&self, conversions: &[Conversion], row: usize) -> f64 {
         conversions.iter().map(|one| one.apply(&self.recording.numbers, row)).sum()
     }
 
@@ -80,7 +90,9 @@ impl Part<'_> {
         let Burnt { by_row_kg: burnt_by_row_kg, bridged } = self.burnt();
         let last = self.rows.at(self.rows.len() - 1);
         self.check_gaps(&burnt_by_row_kg[..=last])?;
+        self.check_start_mass(gross_mass, &burnt_by_row_kg[..=last])?;
         let start_kg = self.mass_of(gross_mass, |row| burnt_by_row_kg[row])?.to_kilograms();
+        let doubts = self.doubts_of_start_mass(gross_mass, &burnt_by_row_kg[..=last], start_kg);
         let last_kg = burnt_by_row_kg[last];
         let zero_fuel_kg = start_kg - last_kg;
         if zero_fuel_kg <= 0.0 || last_kg <= 0.0 {
@@ -101,6 +113,7 @@ impl Part<'_> {
                 .collect(),
             largest_rise_kg: None,
             bridged,
+            doubts,
         })
     }
 
@@ -191,7 +204,8 @@ impl Part<'_> {
             return Err(self.refuse(0, masses.input, found, kind));
         }
         let largest_rise_kg = Some(largest_rise_kg);
-        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg, bridged: 0 })
+        let (bridged, doubts) = (0, Vec::new());
+        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg, bridged, doubts })
     }
 
     /// A gross mass that does not go together with those around it.
@@ -221,6 +235,6 @@ impl Part<'_> {
 }
 
 /// The first of the inputs that are added up.
-fn input_of(conversions: &[Conversion]) -> usize {
+pub(super) fn input_of(conversions: &[Conversion]) -> usize {
     conversions.first().map_or(0, |conversion| conversion.input)
 }

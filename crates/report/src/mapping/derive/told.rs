@@ -131,6 +131,10 @@ impl Part<'_> {
             );
             findings.push(note("mapped-flow-bridged", message));
         }
+        for (code, message) in &load.doubts {
+            let (severity, message) = (Severity::Warning, message.clone());
+            findings.push(Finding { severity, code, message, line: first_line });
+        }
         if let Some((row, column)) = surplus.first() {
             findings.push(Finding {
                 severity: Severity::Warning,

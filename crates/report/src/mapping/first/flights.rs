@@ -1,16 +1,13 @@
 //! What only reading a recording's flights shows: midnight in a count of seconds, and another flight behind a gap.
 
 use flight::column::Column;
-use units::convert::METERS_PER_FOOT;
 
 use super::super::table::Recording;
-use super::super::{Converter, MappedFlight, Mapping, SHORTEST_GAP_S, Source};
+use super::super::{Converter, LOW_M, MappedFlight, Mapping, SHORTEST_GAP_S, Source};
 use super::points::{LONGEST_STEP_S, median};
 use super::times;
 use crate::refusal::Refusal;
 
-/// Behind a gap, an aircraft that is lower has landed meanwhile, or is about to. Our choice.
-const LOW_M: f64 = 10_000.0 * METERS_PER_FOOT;
 /// A mass that is larger by more has been taken on board, kg.
 const LOADED_KG: f64 = 200.0;
 
