@@ -295,6 +295,8 @@ pub enum RefusalKind {
     },
     /// An instant of a recording that is not of the form that the mapping states.
     SourceInstantMalformed,
+    /// A date that can be read with day and month exchanged only.
+    SourceDayAndMonth,
     /// Gross mass that rises by more than the mapping allows.
     GrossMassRises {
         /// Its smallest value so far, kg.

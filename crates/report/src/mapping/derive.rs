@@ -19,7 +19,7 @@ use jiff::SignedDuration;
 use units::Mass;
 
 use super::plan::{Conversion, Plan, TemperatureSource};
-use super::table::{Layout, Recording};
+use super::table::{EARLIEST_S, Layout, Recording};
 use air::AirData;
 pub(super) use rows::Limits;
 use rows::{Converted, Used, UsedRows};
@@ -143,9 +143,11 @@ impl Part<'_> {
         SignedDuration::try_from_secs_f64(seconds)
             .ok()
             .and_then(|duration| self.recording.origin.checked_add(duration).ok())
+            .filter(|start| start.as_second() >= EARLIEST_S)
             .ok_or_else(|| {
                 let found = Found::Number { value: seconds, unit: "s" };
-                self.refuse(0, 0, found, RefusalKind::SourceInstantMalformed)
+                let kind = RefusalKind::SourceInstantMalformed;
+                self.layout.refuse_time(self.recording, self.rows.at(0), found, kind)
             })
     }
 

@@ -17,6 +17,7 @@ use super::file::{MappingFile, TextSource};
 use super::plan::{Plan, TimeForm};
 pub use batch::{Batch, BatchColumn, NO_INSTANT, line_of_names, local_text};
 pub(super) use flights::Assembly;
+pub(super) use instants::EARLIEST_S;
 #[cfg(test)]
 pub(super) use open::Limits;
 pub(super) use recording::{Recording, interpolate};

@@ -93,6 +93,7 @@ impl RefusalKind {
             Self::SourceNotANumber { .. } => "source-not-a-number",
             Self::SourceColumnEmpty { .. } => "source-column-empty",
             Self::SourceInstantMalformed => "source-instant-malformed",
+            Self::SourceDayAndMonth => "source-day-and-month",
             Self::GrossMassRises { .. } => "gross-mass-rises",
             Self::GrossMassJumps { .. } => "gross-mass-jumps",
             Self::TableUnreadable { .. } => "table-unreadable",
@@ -176,6 +177,9 @@ impl fmt::Display for RefusalKind {
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
             Self::SourceColumnEmpty { name } => write_lacking(f, name),
             Self::SourceInstantMalformed => f.write_str(INSTANT),
+            Self::SourceDayAndMonth => f.write_str(
+                "day and month in the order of format in the mapping (%d the day, %m the month), in all files",
+            ),
             Self::GrossMassRises { smallest_kg, admissible_rise_kg, gap_s } => {
                 write_mass_rise(f, *smallest_kg, *admissible_rise_kg, *gap_s)
             }

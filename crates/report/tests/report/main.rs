@@ -1,5 +1,6 @@
 //! Tests of the whole crate from outside, in one program: each would be linked by itself.
 
+mod dates;
 mod guides;
 mod layouts;
 mod mapping;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use flight::Timestamp;
 
 use super::batch::instant_of;
+use super::instants::DAY_S;
 use super::rows::{Rows, Times};
 use super::{Layout, Recording};
 use crate::decode::MAXIMUM_TEXT_BYTES;
@@ -14,6 +15,8 @@ use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 const HALF_A_DAY_S: f64 = 43_200.0;
+/// Up to this long without a row, a day less this is a date that stayed at midnight, s. Our choice.
+const LONGEST_AT_MIDNIGHT_S: f64 = 3600.0;
 
 impl Recording {
     /// Keeps a piece that holds rows of this flight: a refusal needs the text of its line.
@@ -61,7 +64,7 @@ impl Recording {
         // The first row sets the origin.
         let first_s = match times {
             Times::OfDay(_) => return false,
-            _ if self.is_undecided() => return false,
+            _ if self.is_undecided() || self.days != 0.0 => return false,
             _ => self.seconds(layout, times, range.start),
         };
         self.time_s.push(first_s);
@@ -89,6 +92,17 @@ impl Recording {
         follow
     }
 
+    /// A date in a column of its own may stay while the time of day passes midnight, and follow later.
+    fn pass_midnight(&mut self, sent_s: f64) {
+        let Some(last_s) = self.time_s.last() else { return };
+        let since_last_s = sent_s + self.days * DAY_S - last_s;
+        if since_last_s > -DAY_S && since_last_s < LONGEST_AT_MIDNIGHT_S - DAY_S {
+            self.days += 1.0;
+        } else if self.days > 0.0 && since_last_s > DAY_S - LONGEST_AT_MIDNIGHT_S {
+            self.days -= 1.0;
+        }
+    }
+
     /// Seconds since the flight's origin, which its first instant sets.
     pub(super) fn seconds(&mut self, layout: &Layout, times: &Times, row: usize) -> f64 {
         match times {
@@ -102,7 +116,11 @@ impl Recording {
                 if self.time_s.is_empty() {
                     self.origin = times[row];
                 }
-                since_s(times[row], self.origin)
+                let sent_s = since_s(times[row], self.origin);
+                if layout.fields.date.is_some() {
+                    self.pass_midnight(sent_s);
+                }
+                sent_s + self.days * DAY_S
             }
             Times::Nanoseconds(times) => {
                 if self.time_s.is_empty() {
@@ -120,7 +138,7 @@ impl Recording {
                     self.days += 1.0;
                 }
                 self.last_time_of_day_s = seconds;
-                seconds + self.days * 2.0 * HALF_A_DAY_S
+                seconds + self.days * DAY_S
             }
         }
     }

@@ -10,6 +10,14 @@ use crate::number;
 /// Seconds of a day; a leap second or the end of one is the next day's midnight.
 pub(super) const DAY_S: f64 = 86_400.0;
 
+/// The year 1950: what is recorded before it has a year of two digits, or another epoch, s since 1970. Our choice.
+pub(in crate::mapping) const EARLIEST_S: i64 = -631_152_000;
+
+/// A form of dates with the other order.
+pub(super) fn with_day_and_month_exchanged(format: &str) -> String {
+    format.replace("%d", "%?").replace("%m", "%d").replace("%?", "%m")
+}
+
 /// A date, a time and an offset from UTC as one text, as far as they are in columns of their own.
 pub(super) fn in_one<'t>(date: Option<&str>, time: &'t str, offset: Option<&str>) -> Cow<'t, str> {
     match (date, offset) {

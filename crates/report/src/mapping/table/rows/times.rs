@@ -1,6 +1,10 @@
 //! The time of a row, in the form that the mapping states.
 
-use super::super::instants::{DAY_S, formatted, in_one, time_of_day_s, with_sign};
+use flight::Timestamp;
+
+use super::super::instants::{
+    DAY_S, EARLIEST_S, formatted, in_one, time_of_day_s, with_day_and_month_exchanged, with_sign,
+};
 use super::{FARTHEST_S, Row, Rows, Times};
 use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
@@ -37,16 +41,33 @@ impl Rows {
                 let offset = utc_offset.as_deref();
                 let date = layout.fields.date.map(|date| row.field(date));
                 let sent = layout.fields.offset.map(|offset| with_sign(row.field(offset)));
-                let text = in_one(date, text, sent.as_deref());
+                let joined = in_one(date, text, sent.as_deref());
+                // The form is that of date and time; what is behind them is the offset.
+                let by_form = |format: &str| {
+                    formatted(&in_one(date, text, None), format, sent.as_deref().or(offset))
+                };
                 let instant = match format {
-                    None => self.cache.instant(&text, offset),
-                    // The form is that of date and time; what is behind them is the offset.
-                    Some(format) => {
-                        let text = in_one(date, row.field(field), None);
-                        formatted(&text, format, sent.as_deref().or(offset))
+                    None => self.cache.instant(&joined, offset),
+                    Some(format) => by_form(format),
+                };
+                let refused = || {
+                    let swapped = format.as_deref().map(with_day_and_month_exchanged);
+                    let is_swapped = swapped.is_some_and(|format| by_form(&format).is_some());
+                    let kind = if is_swapped {
+                        RefusalKind::SourceDayAndMonth
+                    } else {
+                        RefusalKind::SourceInstantMalformed
+                    };
+                    // Where the time of day can be read it is the date that is wrong.
+                    match (date, layout.fields.date) {
+                        (Some(date), Some(field)) if time_of_day_s(text).is_some() => {
+                            row.refuse(place, field, Found::text(date), kind)
+                        }
+                        _ => row.refuse(place, field, Found::text(text), kind),
                     }
                 };
-                times.push(instant.ok_or_else(malformed)?);
+                let is_of_flights = |instant: &Timestamp| instant.as_second() >= EARLIEST_S;
+                times.push(instant.filter(is_of_flights).ok_or_else(refused)?);
             }
             _ => return Err(malformed()),
         }
