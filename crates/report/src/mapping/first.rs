@@ -45,7 +45,9 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
     let mapping = flights::mended(mapping, &text);
     let of_points = points::of_points(&mapping);
     let far_apart = points::are_far_apart(&of_points, &text);
-    Ok(if far_apart.unwrap_or_else(|| columns.rows_are_far_apart()) { of_points } else { mapping })
+    let of_points_or_samples =
+        if far_apart.unwrap_or_else(|| columns.rows_are_far_apart()) { of_points } else { mapping };
+    Ok(times::without_day(&of_points_or_samples.replace(mass::START_MASS, mass::NO_MASS)))
 }
 
 const LEVEL_CRUISE: &str = "    // Level cruise; leave it away where the recording holds nothing else.\n    cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n";
@@ -64,7 +66,8 @@ impl Columns {
         if is_sparse {
             fields += ", hold_s: 120";
         }
-        (fields, is_guess || is_sparse || name.is_vague())
+        let is_vague = name.is_vague() || name.unknown_unit.is_some();
+        (fields, is_guess || is_sparse || is_vague)
     }
 
     fn unit_by_value(&self, column: usize, kind: Kind) -> (String, bool) {
@@ -132,17 +135,22 @@ impl Columns {
     }
 
     fn engine_unit(&self, quantity: &str, column: usize) -> (String, bool) {
-        match quantity {
-            "WF" => match self.names[column].flow_unit() {
+        let name = &self.names[column];
+        let (unit, is_guess) = match quantity {
+            "WF" => match name.flow_unit() {
                 Some(unit) => unit,
                 None if self.largest(column).is_some_and(|flow| flow < 20.0) => {
                     ("unit: \"kg/s\"".to_owned(), true)
                 }
                 None => ("unit: \"kg/h\"".to_owned(), true),
             },
-            "EGT" => ("unit: \"degC\"".to_owned(), true),
+            "EGT" => match name.unit(Kind::Temperature) {
+                Some(unit) => (unit.to_owned(), false),
+                None => ("unit: \"degC\"".to_owned(), true),
+            },
             _ => ("unit: \"%\"".to_owned(), false),
-        }
+        };
+        (unit, is_guess || name.unknown_unit.is_some())
     }
 
     /// What of MACH, SAT, VTAS and DRIFT has to be derived.
@@ -177,6 +185,8 @@ impl Columns {
         }
         if let (false, Some(track)) = (has("DRIFT"), self.find(&TRACK))
             && let Some(heading) = self.find(&HEADING)
+            // The difference of two columns is in degrees.
+            && [track, heading].iter().all(|column| self.names[*column].may_be_in_degrees())
         {
             let source = format!(
                 "Difference(column: {:?}, minus: {:?}, unit: \"deg\")",
@@ -232,6 +242,18 @@ impl Columns {
             .collect();
         if !missing.is_empty() {
             let _ = writeln!(text, "    // No column found for: {}.", missing.join(", "));
+        }
+        let unknown: Vec<String> = (self.names.iter())
+            .filter_map(|name| Some((&name.sent, name.unknown_unit.as_ref()?)))
+            .filter(|(name, _)| parts[2..].iter().any(|part| part.contains(&format!("{name:?}"))))
+            .map(|(name, unit)| format!("{name:?} ({})", one_line(unit)))
+            .collect();
+        if !unknown.is_empty() {
+            let _ = writeln!(
+                text,
+                "    // Stated in units that are not known, and guessed: {}.",
+                unknown.join(", ")
+            );
         }
         let unused: Vec<String> = (0..self.names.len())
             .filter(|&column| {

@@ -1,6 +1,7 @@
 //! Tests of the whole crate from outside, in one program: each would be linked by itself.
 
 mod dates;
+mod first_mappings;
 mod guides;
 mod layouts;
 mod mapping;

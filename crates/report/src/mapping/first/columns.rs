@@ -98,8 +98,9 @@ impl Columns {
     /// The column of the first of the rule's names that is there and not empty.
     pub(super) fn find(&self, rule: &Rule) -> Option<usize> {
         let found = |wanted: &&str| {
-            (0..self.names.len())
-                .find(|&column| self.names[column].is(wanted) && !self.is_empty(column))
+            (0..self.names.len()).find(|&column| {
+                self.names[column].is_of(wanted, rule.kind) && !self.is_empty(column)
+            })
         };
         rule.names.iter().find_map(found)
     }

@@ -4,8 +4,10 @@ use super::columns::Columns;
 use super::names::engine_of;
 use super::rules::{COMPUTED_FUEL, GAUGES, GROSS, Kind, TAKE_OFF, TANKS, USED, ZERO_FUEL};
 
-/// Where no column holds a mass: a number to be replaced.
+/// Where no column holds a mass, while the recording is looked at.
 pub(super) const START_MASS: &str = "StartMass(gross_weight: Value(60000, \"kg\")),   // ?";
+/// What is then written: a column that no recording has.
+pub(super) const NO_MASS: &str = "GrossMass(column: \"GROSS WEIGHT\", unit: \"kg\", largest_rise_kg: 200),   // ? no column is known for it; from a known take-off mass: StartMass(gross_weight: Value(…, \"kg\"))";
 /// The same where tanks are gauged and the rest is not known.
 const ANY_ZERO_FUEL_WEIGHT: &str = "Value(10000, \"kg\")";
 
@@ -16,16 +18,20 @@ impl Columns {
             let (fields, is_guess) = self.recorded(column, Kind::Mass);
             (self.names[column].sent.clone(), mass_unit(&fields), is_guess)
         };
-        let gross = self.find(&GROSS).or_else(|| self.find(&TAKE_OFF).filter(|at| self.falls(*at)));
+        let known = self.find(&GROSS);
+        let gross = known.or_else(|| self.find(&TAKE_OFF).filter(|at| self.falls(*at)));
         let [zero, used] = [&ZERO_FUEL, &USED].map(|rule| self.find(rule));
         let tanks = self.find(&GAUGES).or_else(|| self.find(&COMPUTED_FUEL));
-        let [left, right] = TANKS.each_ref().map(|rule| self.find(rule));
+        let [left, right, center] = TANKS.each_ref().map(|rule| self.find(rule));
         let found = [gross, zero, tanks, used];
         let of_engines = self.used_by_engines();
         match found {
             [Some(gross), ..] => {
                 let (fields, is_guess) = self.recorded(gross, Kind::Mass);
-                format!("GrossMass({fields}, largest_rise_kg: 200),{}", mark(is_guess))
+                format!(
+                    "GrossMass({fields}, largest_rise_kg: 200),{}",
+                    mark(is_guess || known.is_none())
+                )
             }
             [None, Some(zero), Some(tanks), Some(used)] => {
                 let [zero, tanks, used] = [zero, tanks, used].map(amount);
@@ -56,7 +62,10 @@ impl Columns {
                 )
             }
             _ => match (left.zip(right), self.find(&TAKE_OFF)) {
-                (Some((left, right)), _) => self.mass_of_two_tanks(left, right, zero.map(amount)),
+                (Some((left, right)), _) => {
+                    let tanks: Vec<usize> = [left, right].into_iter().chain(center).collect();
+                    self.mass_of_tanks(&tanks, zero.map(amount))
+                }
                 (None, Some(start)) => {
                     let (name, unit, _) = amount(start);
                     format!("StartMass(gross_weight: Column({name:?}, {unit:?})),   // ?")
@@ -66,20 +75,15 @@ impl Columns {
         }
     }
 
-    fn mass_of_two_tanks(
-        &self,
-        left: usize,
-        right: usize,
-        zero: Option<(String, &'static str, bool)>,
-    ) -> String {
+    fn mass_of_tanks(&self, tanks: &[usize], zero: Option<(String, &'static str, bool)>) -> String {
         let zero = zero.map_or_else(
             || ANY_ZERO_FUEL_WEIGHT.to_owned(),
             |(name, unit, _)| format!("Column({name:?}, {unit:?})"),
         );
-        let unit = mass_unit(&self.recorded(left, Kind::Mass).0);
-        let [left, right] = [left, right].map(|column| &self.names[column].sent);
+        let unit = mass_unit(&self.recorded(tanks[0], Kind::Mass).0);
+        let tanks: Vec<&str> = tanks.iter().map(|tank| self.names[*tank].sent.as_str()).collect();
         format!(
-            "ZeroFuelAndTanks(zero_fuel_weight: {zero}, tanks: [{left:?}, {right:?}], unit: {unit:?}, largest_rise_kg: 500),   // ?"
+            "ZeroFuelAndTanks(zero_fuel_weight: {zero}, tanks: {tanks:?}, unit: {unit:?}, largest_rise_kg: 500),   // ?"
         )
     }
 
@@ -93,12 +97,17 @@ impl Columns {
         (1..=4).map_while(of_engine).collect()
     }
 
-    /// Whether a column is less at its end than where it begins.
+    /// Whether a column is less at its end than where it begins, and not only from flight to flight.
     fn falls(&self, column: usize) -> bool {
-        let numbers = || self.texts_of(column).filter_map(|text| self.number(text));
-        numbers().next().zip(numbers().last()).is_some_and(|(first, last)| last < first)
+        let numbers: Vec<f64> =
+            self.texts_of(column).filter_map(|text| self.number(text)).collect();
+        let steps = numbers.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        numbers.last() < numbers.first() && steps >= MANY_STEPS.min(numbers.len() / MANY_STEPS)
     }
 }
+
+/// A gross mass changes as often at least in a recording of many rows, and in so many rows. Our choice.
+const MANY_STEPS: usize = 20;
 
 /// The unit among the fields of a recorded mass.
 fn mass_unit(fields: &str) -> &'static str {

@@ -8,27 +8,41 @@ pub(super) struct Name {
     /// Letters and digits in lower case, without a unit at the end.
     plain: String,
     unit: Option<&'static str>,
+    /// The same with that unit, where the name has one.
+    whole: String,
+    /// What a row of units says, where it is no unit that we know.
+    pub(super) unknown_unit: Option<String>,
 }
 
-/// What units are called at the end of a name, and what we call them; the longer ones first.
-const UNITS: [(&str, &str); 43] = [
+/// What units are called at the end of a name, their words as in [`WORDS`], and what we call them.
+const UNITS: [(&str, &str); 58] = [
     ("feet", "ft"),
     ("ft", "ft"),
     ("meters", "m"),
     ("metres", "m"),
     ("m", "m"),
+    ("fl", "FL"),
+    ("hft", "FL"),
+    ("100ft", "FL"),
     ("kts", "kt"),
     ("knots", "kt"),
     ("kt", "kt"),
     ("mps", "m/s"),
     (METERS_PER_SECOND, "m/s"),
+    ("kmh", "km/h"),
+    ("kph", "km/h"),
+    ("mph", "mph"),
     ("kgh", "kg/h"),
     ("kgph", "kg/h"),
     ("kghr", "kg/h"),
+    ("kgmin", "kg/min"),
     ("lbh", "lb/h"),
     ("lbhr", "lb/h"),
     ("lbsh", "lb/h"),
+    ("lbshr", "lb/h"),
     ("pph", "lb/h"),
+    ("lbmin", "lb/min"),
+    ("ppm", "lb/min"),
     ("gph", GALLONS),
     ("galh", GALLONS),
     ("galhr", GALLONS),
@@ -37,24 +51,54 @@ const UNITS: [(&str, &str); 43] = [
     ("thr", "t/h"),
     ("kgs", "kg/s"),
     ("kg", "kg"),
-    ("lbs", "lb"),
     ("lb", "lb"),
     ("klbs", "klb"),
     ("klb", "klb"),
-    ("tonnes", "t"),
-    ("tonne", "t"),
-    ("tons", "t"),
+    ("1000lb", "klb"),
+    ("lb1000", "klb"),
+    ("lbx1000", "klb"),
     ("t", "t"),
+    ("1000kg", "t"),
+    ("kgx1000", "t"),
     ("degc", "degC"),
     ("degf", "degF"),
+    ("degk", "K"),
     ("deg", "deg"),
+    ("rad", "rad"),
     ("celsius", "degC"),
+    ("fahrenheit", "degF"),
     ("kelvin", "K"),
     ("pct", "%"),
     ("percent", "%"),
+    ("pctmac", "%"),
     ("c", "degC"),
     ("f", "degF"),
     ("k", "K"),
+];
+
+/// Words of units, and how [`UNITS`] has them.
+const WORDS: [(&str, &str); 21] = [
+    ("pound", "lb"),
+    ("pounds", "lb"),
+    ("lbs", "lb"),
+    ("lbm", "lb"),
+    ("kilograms", "kg"),
+    ("kilogram", "kg"),
+    ("tonnes", "t"),
+    ("tonne", "t"),
+    ("tons", "t"),
+    ("ton", "t"),
+    ("mt", "t"),
+    ("per", ""),
+    ("hr", "h"),
+    ("hour", "h"),
+    ("hrs", "h"),
+    ("sec", "s"),
+    ("second", "s"),
+    ("minute", "min"),
+    ("degrees", "deg"),
+    ("degree", "deg"),
+    ("radians", "rad"),
 ];
 
 /// "m/s" without its stroke, which in one piece are milliseconds.
@@ -65,11 +109,16 @@ const GALLONS: &str = "gal/h";
 /// A US gallon of kerosene of 0.803 kg/l, as fuel flow meters that count gallons take it: 6.7 lb.
 const POUNDS_OF_GALLON: &str = "unit: \"lb/h\", scale: 6.7";
 
+/// What a row of units has for a number without one.
+const NO_UNITS: [&str; 8] = ["", "-", "--", "1", "M", "Mach", "mach", "bool"];
+
 impl Name {
     /// `in_row` is what a row of units says of the column.
     pub(super) fn new(sent: &str, in_row: Option<&str>) -> Self {
         let mut name = Self::from_name(sent);
-        name.unit = in_row.and_then(unit_called).or(name.unit);
+        let stated = in_row.map(str::trim).filter(|text| !NO_UNITS.contains(text));
+        name.unit = stated.and_then(unit_called).or(name.unit);
+        name.unknown_unit = stated.filter(|text| unit_called(text).is_none()).map(str::to_owned);
         if name.unit.is_none() && ["ktas", "kcas", "kias"].contains(&name.plain.as_str()) {
             name.unit = Some("kt");
         }
@@ -78,7 +127,7 @@ impl Name {
 
     /// Whether others are called so too: at times it is another quantity.
     pub(super) fn is_vague(&self) -> bool {
-        ["temperature", "wt", "altb", "baroalt", "togw"].contains(&self.plain.as_str())
+        ["temperature", "wt", "wgt", "altb", "baroalt", "togw"].contains(&self.plain.as_str())
     }
 
     fn from_name(sent: &str) -> Self {
@@ -87,12 +136,13 @@ impl Name {
             .filter(|piece| !piece.is_empty())
             .map(str::to_lowercase)
             .collect();
-        // "kg/h" and "kg_h" come as two pieces.
-        for count in [2, 1] {
+        let whole = pieces.concat();
+        // "kg/h" and "kg_h" come as two pieces, "kg per h" as three.
+        for count in [3, 2, 1] {
             let Some(split) = pieces.len().checked_sub(count).filter(|split| *split > 0) else {
                 continue;
             };
-            let last = pieces[split..].concat();
+            let last = pieces[split..].iter().map(|piece| word_of(piece)).collect::<String>();
             let plain = pieces[..split].concat();
             let is_meant = |word: &str| {
                 word == last
@@ -101,10 +151,12 @@ impl Name {
                     && (word != "m" || !plain.ends_with("time"))
             };
             if let Some((_, unit)) = UNITS.iter().find(|(word, _)| is_meant(word)) {
-                return Self { sent: sent.to_owned(), plain, unit: Some(unit) };
+                let (sent, unit) = (sent.to_owned(), Some(*unit));
+                return Self { sent, plain, unit, whole, unknown_unit: None };
             }
         }
-        Self { sent: sent.to_owned(), plain: pieces.concat(), unit: None }
+        let (sent, plain) = (sent.to_owned(), whole.clone());
+        Self { sent, plain, unit: None, whole, unknown_unit: None }
     }
 
     /// Whether it may be that of an outside air temperature by a name that no rule has.
@@ -119,6 +171,19 @@ impl Name {
         self.plain == wanted
     }
 
+    /// The same of a quantity of some kind: what ends like a temperature's unit (a centre tank, `FQ_C`) has none as a mass.
+    pub(super) fn is_of(&self, wanted: &str, kind: Kind) -> bool {
+        let is_unit = matches!(kind, Kind::Mass)
+            && matches!(self.unit, Some("degC" | "degF" | "K"))
+            && self.unknown_unit.is_none();
+        if is_unit { self.whole == wanted } else { self.is(wanted) }
+    }
+
+    /// Whether nothing says that an angle is in another unit.
+    pub(super) fn may_be_in_degrees(&self) -> bool {
+        self.unknown_unit.is_none() && self.unit.is_none_or(|unit| unit == "deg")
+    }
+
     /// The `unit` field for a quantity of this kind, where the name carries one.
     pub(super) fn unit(&self, kind: Kind) -> Option<&'static str> {
         Some(match (kind, self.unit?) {
@@ -129,12 +194,17 @@ impl Name {
             (Kind::Temperature, "degF") => "unit: \"degF\"",
             (Kind::Speed | Kind::CalibratedSpeed, "kt") => "unit: \"kt\"",
             (Kind::Speed | Kind::CalibratedSpeed, "m/s") => "unit: \"m/s\"",
-            (Kind::Mass, "kg") => "unit: \"kg\"",
+            (Kind::Speed | Kind::CalibratedSpeed, "km/h") => "unit: \"m/s\", scale: 0.277777778",
+            (Kind::Speed | Kind::CalibratedSpeed, "mph") => "unit: \"kt\", scale: 0.868976242",
+            (Kind::Altitude, "FL") => "unit: \"FL\"",
+            // "KGS" are kilograms where they are no flow.
+            (Kind::Mass, "kg" | "kg/s") => "unit: \"kg\"",
             (Kind::Mass, "lb") => "unit: \"lb\"",
             (Kind::Mass, "klb") => "unit: \"klb\"",
             (Kind::Mass, "t") => "unit: \"t\"",
             (Kind::Percent, "%") => "unit: \"%MAC\"",
             (Kind::Angle, "deg") => "unit: \"deg\"",
+            (Kind::Angle, "rad") => "unit: \"deg\", scale: 57.2957795",
             _ => return None,
         })
     }
@@ -145,6 +215,10 @@ impl Name {
         if unit == GALLONS {
             return Some((POUNDS_OF_GALLON.to_owned(), true));
         }
+        let of_minutes = [("kg/min", "kg/h"), ("lb/min", "lb/h")];
+        if let Some((_, unit)) = of_minutes.iter().find(|(known, _)| *known == unit) {
+            return Some((format!("unit: {unit:?}, scale: 60"), false));
+        }
         let is_known = ["kg/h", "lb/h", "kg/s", "t/h"].contains(&unit);
         is_known.then(|| (format!("unit: {unit:?}"), false))
     }
@@ -152,15 +226,20 @@ impl Name {
 
 /// What we call a unit that stands by itself, whatever its marks and capitals.
 pub(super) fn unit_called(text: &str) -> Option<&'static str> {
-    let plain: String =
-        text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>().to_lowercase();
-    let own = [
-        "kt", "ft", "m", "m/s", "kg", "lb", "klb", "t", "kg/h", "lb/h", "kg/s", "t/h", "degC", "K",
-        "deg", "%",
-    ];
-    let as_written = own.into_iter().find(|unit| *unit == text.trim());
-    let is_meant = |word: &str| word == plain && word != METERS_PER_SECOND;
+    let text = text.trim().replace('#', "lb").replace('%', "pct");
+    let own = ["m/s", "K"];
+    let as_written = own.into_iter().find(|unit| *unit == text);
+    let lower = text.to_lowercase();
+    let words = lower.split(|letter: char| !letter.is_alphanumeric());
+    let plain: String = words.map(word_of).collect();
+    let is_meant =
+        |word: &str| word == plain && (word != METERS_PER_SECOND || lower.contains(['/', ' ']));
     as_written.or_else(|| UNITS.iter().find(|(word, _)| is_meant(word)).map(|(_, unit)| *unit))
+}
+
+/// A word of a unit as [`UNITS`] has it.
+fn word_of(word: &str) -> &str {
+    WORDS.iter().find(|(known, _)| *known == word).map_or(word, |(_, word)| word)
 }
 
 /// The engine of a column named by one of `stems` and a number, a letter or a side; `None` for any other column.

@@ -108,6 +108,17 @@ pub(super) const GROSS: Rule = rule(
         "mass",
         "grossmass",
         "aircraftmass",
+        "grosswt",
+        "gwt",
+        "wgt",
+        "acgw",
+        "acweight",
+        "acwt",
+        "acmass",
+        "acgrossweight",
+        "acgrosswt",
+        "aircraftweight",
+        "aircraftgrossweight",
     ],
     Kind::Mass,
 );
@@ -126,10 +137,23 @@ pub(super) const GAUGES: Rule = rule(
     &["fuelquantity", "fuelqty", "fq", "totalfuelquantity", "totalfuelqty", "fuelqtytotal"],
     Kind::Mass,
 );
-/// Gauges of the left and of the right tanks.
-pub(super) const TANKS: [Rule; 2] = [
+/// Gauges of the left, the right and the centre tanks.
+pub(super) const TANKS: [Rule; 3] = [
     rule("", &["fqtyl", "fuelqtyl", "fuelqtyleft", "fuelquantityleft", "fql"], Kind::Mass),
     rule("", &["fqtyr", "fuelqtyr", "fuelqtyright", "fuelquantityright", "fqr"], Kind::Mass),
+    rule(
+        "",
+        &[
+            "fqtyc",
+            "fuelqtyc",
+            "fuelqtycenter",
+            "fuelqtycentre",
+            "fuelquantitycenter",
+            "fuelquantitycentre",
+            "fqc",
+        ],
+        Kind::Mass,
+    ),
 ];
 pub(super) const USED: Rule = rule("", &["fuelused", "fu", "fuelburn", "fuelburnt"], Kind::Mass);
 pub(super) const ENGINE_NAMES: [(&str, &[&str]); 4] = [

@@ -7,8 +7,10 @@ const SPREADSHEET_DAY_0: &str = "1899-12-30T00:00:00Z";
 /// Days that spreadsheets count to 1980 and to 2100.
 const SPREADSHEET_DAYS: core::ops::Range<f64> = 29_221.0..73_051.0;
 
-/// The day on which a recording without date is taken to begin.
+/// The day on which a recording without date is taken to begin while it is looked at.
 const ANY_DAY: &str = "2000-01-01";
+/// What is then written, which no mapping is read with.
+const NO_DAY: &str = "YYYY-MM-DD";
 
 const TIME_NAMES: [&str; 15] = [
     "timestamp",
@@ -64,14 +66,17 @@ impl Columns {
                 format!("Timestamp(column: {name:?}, utc_offset: \"Z\"),{mark}")
             }
             None => match (form, date) {
-                (Some(form), _) => format!(
-                    "Timestamp(column: {name:?}, format: {form:?}, utc_offset: \"Z\"),   // ?"
+                (Some((form, mark)), _) => format!(
+                    "Timestamp(column: {name:?}, format: {form:?}, utc_offset: \"Z\"),{mark}"
                 ),
                 (None, Some(date)) => {
                     // Without a form the date is ISO.
                     let form = self.date_form(date);
-                    let form = form.map_or_else(String::new, |form| format!(" format: {form:?},"));
-                    let (offset, mark) = self.offset();
+                    let (form, of_form) = form.map_or_else(Default::default, |(form, mark)| {
+                        (format!(" format: {form:?},"), mark)
+                    });
+                    let (offset, of_offset) = self.offset();
+                    let mark = if of_form.is_empty() { of_offset } else { of_form };
                     let date = &self.names[date].sent;
                     format!("Timestamp(column: {name:?}, date: {date:?},{form} {offset}),{mark}")
                 }
@@ -101,25 +106,30 @@ impl Columns {
         known().all(is_day) && known().any(has_decimals)
     }
 
-    /// The form of dates with slashes or points: day first unless a number says otherwise, of twelve hours where the text ends in AM
-    /// or PM. `None` of other texts.
-    fn date_form(&self, column: usize) -> Option<&'static str> {
+    /// The form of dates with slashes or points, and the mark of a guess: day first unless a number says otherwise, of twelve hours
+    /// where the text ends in AM or PM. `None` of other texts.
+    fn date_form(&self, column: usize) -> Option<(String, &'static str)> {
         let first = self.texts_of(column).find(|text| !text.is_empty())?;
         let mark = ['/', '.'].into_iter().find(|mark| numbers_of_date(first, *mark).is_some())?;
-        let month_first = self
-            .texts_of(column)
-            .filter_map(|text| numbers_of_date(text, mark))
-            .any(|[_, second]| second > 12);
-        let twelve_hours = first.ends_with(['M', 'm']);
-        Some(match (mark, month_first, twelve_hours) {
-            ('/', false, false) => "%d/%m/%Y %H:%M:%S",
-            ('/', true, false) => "%m/%d/%Y %H:%M:%S",
-            ('/', false, true) => "%d/%m/%Y %I:%M:%S %p",
-            ('/', true, true) => "%m/%d/%Y %I:%M:%S %p",
-            (_, false, _) => "%d.%m.%Y %H:%M:%S",
-            (_, true, _) => "%m.%d.%Y %H:%M:%S",
-        })
+        let dates = || self.texts_of(column).filter_map(|text| numbers_of_date(text, mark));
+        let month_first = dates().any(|[_, second, _]| second > 12);
+        let day_first = dates().any(|[first, ..]| first > 12);
+        let [one, other] = if month_first { ["%m", "%d"] } else { ["%d", "%m"] };
+        let year = if dates().all(|[.., year]| year < 100) { "%y" } else { "%Y" };
+        let clock = if first.ends_with(['M', 'm']) { "%I:%M:%S %p" } else { "%H:%M:%S" };
+        let guess = if month_first || day_first {
+            "   // ?"
+        } else {
+            "   // ? %d is the day, %m the month"
+        };
+        Some((format!("{one}{mark}{other}{mark}{year} {clock}"), guess))
     }
+}
+
+/// The mapping without the day that no column holds.
+pub(super) fn without_day(mapping: &str) -> String {
+    let any_day = format!("\"{ANY_DAY}");
+    mapping.replacen(&any_day, &format!("\"{NO_DAY}"), 1)
 }
 
 /// The same mapping with seconds since a day as seconds of the day, which begin again at midnight.
@@ -129,12 +139,9 @@ pub(super) fn of_day(mapping: &str) -> String {
     mapping.replacen("time: Seconds(", "time: TimeOfDay(", 1).replacen(&since, &of_day, 1)
 }
 
-/// The first two numbers of a date whose three numbers have a mark between them.
-fn numbers_of_date(text: &str, mark: char) -> Option<[u32; 2]> {
+/// The numbers of a date that have a mark between them.
+fn numbers_of_date(text: &str, mark: char) -> Option<[u32; 3]> {
     let date = text.split([' ', 'T']).next()?;
     let numbers: Result<Vec<u32>, _> = date.split(mark).map(str::parse).collect();
-    match numbers.ok()?[..] {
-        [first, second, _] => Some([first, second]),
-        _ => None,
-    }
+    numbers.ok()?.try_into().ok()
 }
