@@ -17,6 +17,7 @@ use report::mapping::{Batch, Source};
 
 use columns::{Buffers, Column};
 use fields::Field;
+pub(crate) use fields::durations;
 use flatbuffer::Table;
 
 /// What a file begins with; a stream begins with a message.

@@ -9,6 +9,8 @@ mod shared_file;
 use std::fs::File;
 use std::path::Path;
 
+use crate::arrow_batches::durations;
+
 use cells::{cells_of, skip};
 use pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as PhysicalType};
@@ -171,10 +173,18 @@ impl Table {
         schema.columns().iter().map(|column| column.path().string()).collect()
     }
 
-    /// Places of columns that are not read.
+    /// Places of columns that are not read. Durations are whole numbers, of which only Arrow's own schema states the unit.
     fn unread(&self) -> Vec<usize> {
-        let schema = self.reader.metadata().file_metadata().schema_descr();
-        let is_unread = |place: &usize| kind_of(&schema.column(*place)).is_none();
+        let metadata = self.reader.metadata().file_metadata();
+        let schema = metadata.schema_descr();
+        let of_arrow = metadata.key_value_metadata().into_iter().flatten();
+        let of_arrow = of_arrow.filter(|pair| pair.key == "ARROW:schema");
+        let durations: Vec<String> =
+            of_arrow.filter_map(|pair| pair.value.as_deref()).flat_map(durations).collect();
+        let is_unread = |place: &usize| {
+            let column = schema.column(*place);
+            kind_of(&column).is_none() || durations.contains(&column.path().string())
+        };
         (0..schema.num_columns()).filter(is_unread).collect()
     }
 

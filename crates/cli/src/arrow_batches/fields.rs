@@ -104,6 +104,43 @@ pub(super) fn of_schema(schema: Table<'_>) -> Option<Vec<Field>> {
     (0..fields.length).map(|place| field(fields.table(place)?, 0)).collect()
 }
 
+/// Columns of durations in a schema as Arrow's writers put it into other files: a message in base 64. Whoever reads the numbers alone
+/// does not know their unit.
+pub(crate) fn durations(schema: &str) -> Vec<String> {
+    const DURATION: u8 = 18;
+    let message = from_base_64(schema);
+    let begin = if message.starts_with(&[0xff; 4]) { 8 } else { 4 };
+    let message = message.get(begin..).and_then(Table::root);
+    let fields = message.and_then(|message| message.table(2)?.vector(1));
+    let name = |field: Table<'_>| {
+        (field.byte(2) == Some(DURATION)).then(|| field.text(0).unwrap_or_default().to_owned())
+    };
+    let fields =
+        fields.into_iter().flat_map(|fields| (0..fields.length).map(move |at| fields.table(at)));
+    fields.flatten().filter_map(name).collect()
+}
+
+fn from_base_64(text: &str) -> Vec<u8> {
+    let digit = |letter: u8| match letter {
+        b'A'..=b'Z' => Some(letter - b'A'),
+        b'a'..=b'z' => Some(letter - b'a' + 26),
+        b'0'..=b'9' => Some(letter - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    };
+    let (mut bytes, mut bits, mut held) = (Vec::new(), 0_u32, 0);
+    for digit in text.bytes().filter_map(digit) {
+        bits = (bits << 6) | u32::from(digit);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            bytes.push((bits >> held).to_le_bytes()[0]);
+        }
+    }
+    bytes
+}
+
 /// Deepest nesting that is looked into: a damaged file must not lead in circles.
 const DEEPEST: usize = 16;
 
@@ -206,4 +243,19 @@ fn integer(form: Table<'_>) -> Option<Number> {
     };
     let is_signed = form.byte(1).unwrap_or(0) != 0;
     Some(if is_signed { Number::Signed(width) } else { Number::Unsigned(width) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: pyarrow 22, `base64.b64encode(pa.schema([("TIME", pa.duration("ms")), ("alt", pa.float64())]).serialize())`.
+    #[test]
+    fn durations_of_a_schema() {
+        let schema = "/////6gAAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAIAAABIAAAABAAAAND///8AAAED\
+            EAAAABwAAAAEAAAAAAAAAAMAAABhbHQAAAAGAAgABgAGAAAAAAACABAAFAAIAAYABwAMAAAAEAAQAAAAAAABEhAAAAAcAAAABAAAAAAA\
+            AAAEAAAAVElNRQAAAAAEAAQABAAAAAAAAAA=";
+        assert_eq!(durations(schema), ["TIME"]);
+        assert_eq!(durations(&schema[..80]), Vec::<String>::new());
+    }
 }
