@@ -87,6 +87,13 @@ impl FlightCheck {
         #[expect(clippy::cast_precision_loss, reason = "rows are far fewer than 2^53")]
         let share = left_out as f64 / (rows + left_out).max(1) as f64;
         if share > LEFT_OUT_SHARE {
+            // What fuel and time add up to without these rows says nothing of units.
+            for finding in &mut self.findings {
+                if finding.code == fuel::USED_AGAINST_FLOW {
+                    "the rows that are left out".clone_into(&mut finding.likely_cause);
+                    "see rows-left-out first".clone_into(&mut finding.remedy);
+                }
+            }
             let draft = Draft {
                 severity: Severity::Warning,
                 code: "rows-left-out",

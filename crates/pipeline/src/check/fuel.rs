@@ -23,6 +23,10 @@ const SAME_ROTOR_SPEED_PERCENT: f64 = 0.6;
 /// The longest gap within a flight, s: as in a mapping that states none. What is burnt over a longer one nobody recorded.
 const LONGEST_GAP_S: f64 = 10_800.0;
 
+/// A mass that falls as seldom, in more samples than these, is not that of each sample. Our choice.
+const MOST_STEPS: usize = 5;
+const FEWEST_ROWS: usize = 100;
+
 /// Code of the finding that fuel used and fuel flow do not add up.
 pub(super) const USED_AGAINST_FLOW: &str = "fuel-used-against-flow";
 
@@ -73,6 +77,11 @@ fn gap_between_flights_s(time_s: &[f64]) -> Option<(f64, f64)> {
     gaps.max_by(|one, other| one.1.total_cmp(&other.1)).filter(|(_, gap_s)| *gap_s > LONGEST_GAP_S)
 }
 
+/// How often a counter of fuel used rises.
+fn steps_of_counter(fuel_used_kg: &[f64]) -> usize {
+    fuel_used_kg.windows(2).filter(|pair| pair[1] > pair[0]).count()
+}
+
 fn explain(ratio: f64, report: &Report) -> (String, String) {
     if let Some((from_s, gap_s)) = gap_between_flights_s(&report.columns().time_s) {
         return (
@@ -84,6 +93,13 @@ fn explain(ratio: f64, report: &Report) -> (String, String) {
         return (
             "FU does not count: it is constant, or it is not fuel used".to_owned(),
             "map FU to the counter of fuel used, or derive mass from gross weight".to_owned(),
+        );
+    }
+    let steps = steps_of_counter(&report.columns().fuel_used_kg);
+    if (1..=MOST_STEPS).contains(&steps) && report.len() > FEWEST_ROWS {
+        return (
+            "mass stays while fuel is burnt: a take-off mass for the gross mass".to_owned(),
+            "StartMass in the mapping, with a flight for each take-off mass".to_owned(),
         );
     }
     // Where only a total is recorded the number of engines is unknown: 2, 3 and 4 are tried.
@@ -262,5 +278,35 @@ mod tests {
         assert_eq!(found, "a gap of 72000 s from 7200 s on: two flights of one number?");
         assert!(remedy.starts_with("new_flight_after_s"), "{remedy}");
         assert!(!cause(10_800.0).0.contains("gap"));
+    }
+
+    /// Two take-off masses of two legs, of which the second is 1500 kg less.
+    #[test]
+    fn a_mass_that_stays_is_a_take_off_mass() {
+        let mut columns = test_support::reports::steady(60.0, 242);
+        columns.fuel_flow = FuelFlowColumns::Total(vec![2400.0 / 3600.0; 242]);
+        columns.fuel_used_kg = vec![0.0; 121];
+        columns.fuel_used_kg.resize(242, 1500.0);
+        let report = Report::new(test_support::reports::header(), columns).unwrap();
+        let flow_kg_s = report.columns().fuel_flow.totals_kg_s();
+        let draft = used_against_flow(&report, &flow_kg_s).unwrap();
+        assert!(draft.likely_cause.contains("take-off mass"), "{}", draft.likely_cause);
+        assert!(draft.remedy.starts_with("StartMass"), "{}", draft.remedy);
+    }
+
+    /// Fuel used is twice the integral of flow: one engine of two, but not where a third of the rows is not there.
+    #[test]
+    fn with_rows_left_out_no_unit_is_blamed() {
+        let mut columns = test_support::reports::steady(60.0, 242);
+        columns.fuel_flow = FuelFlowColumns::Total(vec![1000.0 / 3600.0; 242]);
+        columns.fuel_used_kg = columns.time_s.iter().map(|time_s| time_s / 1.8).collect();
+        let report = Report::new(test_support::reports::header(), columns).unwrap();
+        let cause = |left_out| {
+            let check = super::super::check_report(&report).with_rows_left_out(242, left_out);
+            let found = check.findings.into_iter().find(|one| one.code == USED_AGAINST_FLOW);
+            found.unwrap().likely_cause
+        };
+        assert_eq!(cause(0), "WF is the flow of one of 2 engines");
+        assert_eq!(cause(121), "the rows that are left out");
     }
 }
