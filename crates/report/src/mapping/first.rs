@@ -47,7 +47,7 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
     let far_apart = points::are_far_apart(&of_points, &text);
     let of_points_or_samples =
         if far_apart.unwrap_or_else(|| columns.rows_are_far_apart()) { of_points } else { mapping };
-    Ok(times::without_day(&of_points_or_samples.replace(mass::START_MASS, mass::NO_MASS)))
+    Ok(times::without_day(&mass::without_masses(&of_points_or_samples)))
 }
 
 const LEVEL_CRUISE: &str = "    // Level cruise; leave it away where the recording holds nothing else.\n    cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n";

@@ -72,6 +72,10 @@ fn the_centre_tank_is_not_all_tanks() {
     let tanks = [("FQ_L", "-", "6400"), ("FQ_R", "-", "6400"), ("FQ_C", "-", "3200")];
     let mapping = of(&tanks);
     assert!(mapping.contains("tanks: [\"FQ_L\", \"FQ_R\", \"FQ_C\"]"), "{mapping}");
+    assert!(
+        mapping.contains("zero_fuel_weight: Column(\"ZERO FUEL WEIGHT\", \"kg\")"),
+        "{mapping}"
+    );
     assert!(!mapping.contains("\"FQ\": Recorded"), "{mapping}");
 }
 

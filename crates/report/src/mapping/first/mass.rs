@@ -7,9 +7,15 @@ use super::rules::{COMPUTED_FUEL, GAUGES, GROSS, Kind, TAKE_OFF, TANKS, USED, ZE
 /// Where no column holds a mass, while the recording is looked at.
 pub(super) const START_MASS: &str = "StartMass(gross_weight: Value(60000, \"kg\")),   // ?";
 /// What is then written: a column that no recording has.
-pub(super) const NO_MASS: &str = "GrossMass(column: \"GROSS WEIGHT\", unit: \"kg\", largest_rise_kg: 200),   // ? no column is known for it; from a known take-off mass: StartMass(gross_weight: Value(…, \"kg\"))";
-/// The same where tanks are gauged and the rest is not known.
+const NO_MASS: &str = "GrossMass(column: \"GROSS WEIGHT\", unit: \"kg\", largest_rise_kg: 200),   // ? no column is known for it; from a known take-off mass: StartMass(gross_weight: Value(…, \"kg\"))";
+/// The same of a zero-fuel weight where tanks are gauged.
 const ANY_ZERO_FUEL_WEIGHT: &str = "Value(10000, \"kg\")";
+const NO_ZERO_FUEL_WEIGHT: &str = "Column(\"ZERO FUEL WEIGHT\", \"kg\")";
+
+/// The mapping without the masses that no column holds.
+pub(super) fn without_masses(mapping: &str) -> String {
+    mapping.replace(START_MASS, NO_MASS).replace(ANY_ZERO_FUEL_WEIGHT, NO_ZERO_FUEL_WEIGHT)
+}
 
 impl Columns {
     /// Where mass comes from.
