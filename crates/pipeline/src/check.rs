@@ -87,9 +87,9 @@ impl FlightCheck {
         #[expect(clippy::cast_precision_loss, reason = "rows are far fewer than 2^53")]
         let share = left_out as f64 / (rows + left_out).max(1) as f64;
         if share > LEFT_OUT_SHARE {
-            // What fuel and time add up to without these rows says nothing of units.
+            // What fuel or positions and time add up to without these rows says nothing of units.
             for finding in &mut self.findings {
-                if finding.code == fuel::USED_AGAINST_FLOW {
+                if [fuel::USED_AGAINST_FLOW, ground::AGAINST_POSITION].contains(&finding.code) {
                     "the rows that are left out".clone_into(&mut finding.likely_cause);
                     "see rows-left-out first".clone_into(&mut finding.remedy);
                 }

@@ -38,6 +38,9 @@ const SAME_SCATTER: f64 = 1.25;
 /// Rolls that turn an aircraft, degrees.
 const TURNING_ROLL_DEG: f64 = 5.0;
 
+/// Code of the finding that ground speed is not that of the positions.
+pub(super) const AGAINST_POSITION: &str = "ground-speed-against-position";
+
 pub(super) fn check(report: &Report) -> Vec<Draft> {
     let legs = legs(report);
     let wind = wind(report);
@@ -179,7 +182,7 @@ fn speed(report: &Report, legs: &[Leg], (wind_kt, over_air): (f64, f64)) -> Opti
         let serious = (ratio - 1.0).abs() > SERIOUS_SHARE;
         return Some(Draft {
             severity: if serious { Severity::Serious } else { Severity::Warning },
-            code: "ground-speed-against-position",
+            code: AGAINST_POSITION,
             size: ratio,
             unit: "-",
             message: format!("ground speed is {ratio:.3} of the speed at which the positions move"),

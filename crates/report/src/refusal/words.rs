@@ -152,13 +152,9 @@ impl fmt::Display for RefusalKind {
                 write_fuel_fall(f, (*largest, *tolerance, unit), *gap_s)
             }
             Self::FlowOverGap { longest_s } => write_longest_gap(f, *longest_s),
-            Self::StartMassChanges { before_kg } => {
-                write!(f, "one start mass in a flight, {before_kg} kg{ANOTHER_FLIGHT}")
-            }
+            Self::StartMassChanges { before_kg } => write_start_mass(f, *before_kg),
             Self::MassNotPositive { mass } => write!(f, "{mass} above zero"),
-            Self::LastRowUnfinished { expected } => {
-                write!(f, "a complete row of {expected} fields and a line end")
-            }
+            Self::LastRowUnfinished { expected } => write_whole_row(f, *expected),
             Self::GzipTruncated => f.write_str("more compressed text: the gzip file is truncated"),
             Self::GzipCorrupt => f.write_str("compressed text: the gzip file is corrupt"),
             Self::InvalidUtf8 => f.write_str("UTF-8 text"),
@@ -177,9 +173,7 @@ impl fmt::Display for RefusalKind {
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
             Self::SourceColumnEmpty { name } => write_lacking(f, name),
             Self::SourceInstantMalformed => f.write_str(INSTANT),
-            Self::SourceDayAndMonth => f.write_str(
-                "day and month in the order of format in the mapping (%d the day, %m the month), in all files",
-            ),
+            Self::SourceDayAndMonth => f.write_str(DAY_AND_MONTH),
             Self::GrossMassRises { smallest_kg, admissible_rise_kg, gap_s } => {
                 write_mass_rise(f, *smallest_kg, *admissible_rise_kg, *gap_s)
             }
@@ -192,6 +186,8 @@ impl fmt::Display for RefusalKind {
     }
 }
 
+const DAY_AND_MONTH: &str =
+    "day and month in the order of format in the mapping (%d the day, %m the month), in all files";
 const INSTANT: &str = "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping";
 const ANOTHER_FLIGHT: &str = ": another flight? new_flight_after_s in the mapping divides them";
 const SAMPLES: &str =
@@ -247,6 +243,14 @@ fn write_fuel_fall(
         "FU no more than {tolerance} {unit} below its largest value so far, {largest} {unit}"
     )?;
     write_gap(f, gap_s)
+}
+
+fn write_whole_row(f: &mut fmt::Formatter<'_>, expected: usize) -> fmt::Result {
+    write!(f, "a complete row of {expected} fields and a line end")
+}
+
+fn write_start_mass(f: &mut fmt::Formatter<'_>, before_kg: f64) -> fmt::Result {
+    write!(f, "one start mass in a flight, {before_kg} kg{ANOTHER_FLIGHT}")
 }
 
 fn write_longest_gap(f: &mut fmt::Formatter<'_>, longest_s: f64) -> fmt::Result {

@@ -1,5 +1,7 @@
 //! What a first mapping makes of units, masses and dates that a recording states in its own way, or not at all.
 
+#![expect(clippy::panic, reason = "a test fails by panicking, in its helpers too")]
+
 use report::Mapping;
 use report::mapping::first_mapping;
 
@@ -17,7 +19,8 @@ fn of(columns: &[(&str, &str, &str)]) -> String {
             *line = format!("{line}{}{field}", if at == 0 { "" } else { "," });
         }
     }
-    first_mapping((lines.join("\n") + "\n").as_bytes()).unwrap()
+    first_mapping((lines.join("\n") + "\n").as_bytes())
+        .unwrap_or_else(|refusal| panic!("{refusal}"))
 }
 
 fn line_of<'m>(mapping: &'m str, what: &str) -> &'m str {
@@ -39,6 +42,7 @@ fn units_are_known_by_their_usual_spellings() {
         ("ROLL", "roll", "\"deg\", scale: 57.2957795", "rad|radians|RAD"),
         ("SAT", "sat", "\"degF\"", "F|degF|DEG F|Fahrenheit"),
         ("SAT", "sat", "\"K\"", "K|degK|Kelvin"),
+        ("FQ", "fq", "\"lb\"", "Lbs|pounds"),
     ] {
         for unit in spellings.split('|') {
             let expected = format!("unit: {written}");

@@ -107,7 +107,7 @@ impl Columns {
     fn falls(&self, column: usize) -> bool {
         let numbers: Vec<f64> =
             self.texts_of(column).filter_map(|text| self.number(text)).collect();
-        let steps = numbers.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        let steps = numbers.windows(2).filter(|pair| (pair[0] - pair[1]).abs() > 0.0).count();
         numbers.last() < numbers.first() && steps >= MANY_STEPS.min(numbers.len() / MANY_STEPS)
     }
 }

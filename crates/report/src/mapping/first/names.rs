@@ -110,7 +110,7 @@ const GALLONS: &str = "gal/h";
 const POUNDS_OF_GALLON: &str = "unit: \"lb/h\", scale: 6.7";
 
 /// What a row of units has for a number without one.
-const NO_UNITS: [&str; 8] = ["", "-", "--", "1", "M", "Mach", "mach", "bool"];
+const NO_UNITS: [&str; 7] = ["", "-", "--", "1", "Mach", "mach", "bool"];
 
 impl Name {
     /// `in_row` is what a row of units says of the column.

@@ -32,7 +32,7 @@ pub(super) type LeftOut = (usize, Refusal);
 fn is_in_line(time_s: f64, before_s: f64, (first_s, last_s): (f64, f64)) -> bool {
     time_s > before_s
         && time_s < first_s
-        && (first_s == last_s || time_s - before_s <= last_s - first_s + FAR_AHEAD_S)
+        && (first_s >= last_s || time_s - before_s <= last_s - first_s + FAR_AHEAD_S)
 }
 
 impl Recording {
@@ -137,7 +137,9 @@ impl Recording {
             self.lines.pop();
         }
         self.numbers.extend(&kept, 0..lines.len());
-        lines.into_iter().for_each(|line| self.lines.push(line));
+        for line in lines {
+            self.lines.push(line);
+        }
         self.time_s.drain(rows);
     }
 }
