@@ -26,8 +26,8 @@ impl Part<'_> {
             MassPlan::StartMass { gross_mass } => self.load_of_integrated_flow(gross_mass),
             MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
                 let used_kg = |row| self.sum_kg(fuel_used, row);
-                let zero_fuel_mass = self.mass_of(zero_fuel_mass, |_| 0.0)?;
-                let fuel_on_board = self.mass_of(fuel_on_board, used_kg)?;
+                let zero_fuel_mass = self.mass_of(zero_fuel_mass, &|_| 0.0)?;
+                let fuel_on_board = self.mass_of(fuel_on_board, &used_kg)?;
                 let used_rows = self.rows.runs().flatten();
                 let series = Series::new(used_rows.map(used_kg).collect(), input_of(fuel_used));
                 let maximum = Some(fuel_on_board.to_kilograms());
@@ -47,16 +47,17 @@ impl Part<'_> {
 
     /// A mass of the load sheet: in a column that of the recording's first row. A column that falls is no load sheet, which stays as
     /// it was sent, but what there is at each row (the tanks' contents, gross mass): it lacks the fuel burnt until then.
+    #[inline(never)]
     pub(super) fn mass_of(
         &self,
         load: &LoadSource,
-        burnt_kg: impl Fn(usize) -> f64,
+        burnt_kg: &dyn Fn(usize) -> f64,
     ) -> Result<Mass, Refusal> {
         let conversions = match load {
             LoadSource::Known(mass) => return Ok(*mass),
             LoadSource::Columns(conversions) => conversions,
         };
-        let (first, falls) = self.first_sent(conversions, &burnt_kg);
+        let (first, falls) = self.first_sent(conversions, burnt_kg);
         let value = self.sum_kg(conversions, first) + if falls { burnt_kg(first) } else { 0.0 };
         if value > 0.0 {
             return Ok(Mass::kilograms(value));
@@ -67,10 +68,11 @@ impl Part<'_> {
     }
 
     /// The first row that has a mass of the load sheet, and whether that falls further on.
+    #[inline(never)]
     pub(super) fn first_sent(
         &self,
         conversions: &[Conversion],
-        burnt_kg: impl Fn(usize) -> f64,
+        burnt_kg: &dyn Fn(usize) -> f64,
     ) -> (usize, bool) {
         let at = |row: usize| self.sum_kg(conversions, row);
         let sent = |row: &usize| at(*row).is_finite() && burnt_kg(*row).is_finite();
@@ -80,7 +82,8 @@ impl Part<'_> {
         (first, at(last) < at(first) - FUEL_USED_STEP_KG)
     }
 
-    /// The sum of columns in a row of the recording.
+    /// The sum of columns in a row of the recording. In one piece: the program has no room for each of its uses.
+    #[inline(never)]
     pub(super) fn sum_kg(&self, conversions: &[Conversion], row: usize) -> f64 {
         conversions.iter().map(|one| one.apply(&self.recording.numbers, row)).sum()
     }
@@ -91,7 +94,7 @@ impl Part<'_> {
         let last = self.rows.at(self.rows.len() - 1);
         self.check_gaps(&burnt_by_row_kg[..=last])?;
         self.check_start_mass(gross_mass, &burnt_by_row_kg[..=last])?;
-        let start_kg = self.mass_of(gross_mass, |row| burnt_by_row_kg[row])?.to_kilograms();
+        let start_kg = self.mass_of(gross_mass, &|row| burnt_by_row_kg[row])?.to_kilograms();
         let doubts = self.doubts_of_start_mass(gross_mass, &burnt_by_row_kg[..=last], start_kg);
         let last_kg = burnt_by_row_kg[last];
         let zero_fuel_kg = start_kg - last_kg;

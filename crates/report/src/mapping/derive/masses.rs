@@ -74,7 +74,7 @@ impl Part<'_> {
                 (masses, *zero_fuel_mass, *largest_rise_kg)
             }
             MassPlan::ZeroFuelAndTanks { zero_fuel_mass, tanks, largest_rise_kg } => {
-                let zero_fuel_mass = self.mass_of(zero_fuel_mass, |_| 0.0)?;
+                let zero_fuel_mass = self.mass_of(zero_fuel_mass, &|_| 0.0)?;
                 let mut values = vec![zero_fuel_mass.to_kilograms(); self.rows.len()];
                 for tank in tanks {
                     for (value, fuel_kg) in values.iter_mut().zip(self.convert(tank)) {

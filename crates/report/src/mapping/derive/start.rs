@@ -18,6 +18,7 @@ const WORTH_A_WORD_SHARE: f64 = 0.005;
 
 impl Part<'_> {
     /// A start mass that is another one further on is another flight's; what falls with the fuel that is burnt is gross mass.
+    #[inline(never)]
     pub(super) fn check_start_mass(
         &self,
         start_mass: &LoadSource,
@@ -48,6 +49,7 @@ impl Part<'_> {
     }
 
     /// Code and words of what is not known of a mass that is followed to the last of these rows.
+    #[inline(never)]
     pub(super) fn doubts_of_start_mass(
         &self,
         start_mass: &LoadSource,
@@ -60,7 +62,7 @@ impl Part<'_> {
         let first_m = altitude.map(|(_, altitude)| altitude.apply(&self.recording.numbers, 0));
         let falls = match start_mass {
             LoadSource::Known(_) => false,
-            LoadSource::Columns(conversions) => self.first_sent(conversions, |_| 0.0).1,
+            LoadSource::Columns(conversions) => self.first_sent(conversions, &|_| 0.0).1,
         };
         if let Some(first_m) = first_m.filter(|first_m| *first_m > LOW_M)
             && !falls

@@ -14,92 +14,18 @@ pub(super) struct Name {
     pub(super) unknown_unit: Option<String>,
 }
 
-/// What units are called at the end of a name, their words as in [`WORDS`], and what we call them.
-const UNITS: [(&str, &str); 58] = [
-    ("feet", "ft"),
-    ("ft", "ft"),
-    ("meters", "m"),
-    ("metres", "m"),
-    ("m", "m"),
-    ("fl", "FL"),
-    ("hft", "FL"),
-    ("100ft", "FL"),
-    ("kts", "kt"),
-    ("knots", "kt"),
-    ("kt", "kt"),
-    ("mps", "m/s"),
-    (METERS_PER_SECOND, "m/s"),
-    ("kmh", "km/h"),
-    ("kph", "km/h"),
-    ("mph", "mph"),
-    ("kgh", "kg/h"),
-    ("kgph", "kg/h"),
-    ("kghr", "kg/h"),
-    ("kgmin", "kg/min"),
-    ("lbh", "lb/h"),
-    ("lbhr", "lb/h"),
-    ("lbsh", "lb/h"),
-    ("lbshr", "lb/h"),
-    ("pph", "lb/h"),
-    ("lbmin", "lb/min"),
-    ("ppm", "lb/min"),
-    ("gph", GALLONS),
-    ("galh", GALLONS),
-    ("galhr", GALLONS),
-    ("th", "t/h"),
-    ("tph", "t/h"),
-    ("thr", "t/h"),
-    ("kgs", "kg/s"),
-    ("kg", "kg"),
-    ("lb", "lb"),
-    ("klbs", "klb"),
-    ("klb", "klb"),
-    ("1000lb", "klb"),
-    ("lb1000", "klb"),
-    ("lbx1000", "klb"),
-    ("t", "t"),
-    ("1000kg", "t"),
-    ("kgx1000", "t"),
-    ("degc", "degC"),
-    ("degf", "degF"),
-    ("degk", "K"),
-    ("deg", "deg"),
-    ("rad", "rad"),
-    ("celsius", "degC"),
-    ("fahrenheit", "degF"),
-    ("kelvin", "K"),
-    ("pct", "%"),
-    ("percent", "%"),
-    ("pctmac", "%"),
-    ("c", "degC"),
-    ("f", "degF"),
-    ("k", "K"),
-];
+/// What units are called at the end of a name, their words as in [`WORDS`], and what we call them. In one text: the program has no room
+/// for lists.
+const UNITS: &str = "feet=ft ft=ft meters=m metres=m m=m fl=FL hft=FL 100ft=FL kts=kt knots=kt kt=kt mps=m/s \
+    ms=m/s kmh=km/h kph=km/h mph=mph kgh=kg/h kgph=kg/h kghr=kg/h kgmin=kg/min lbh=lb/h \
+    lbhr=lb/h lbsh=lb/h lbshr=lb/h pph=lb/h lbmin=lb/min ppm=lb/min gph=gal/h galh=gal/h \
+    galhr=gal/h th=t/h tph=t/h thr=t/h kgs=kg/s kg=kg lb=lb klbs=klb klb=klb 1000lb=klb \
+    lb1000=klb lbx1000=klb t=t 1000kg=t kgx1000=t degc=degC degf=degF degk=K deg=deg rad=rad \
+    celsius=degC fahrenheit=degF kelvin=K pct=% percent=% pctmac=% c=degC f=degF k=K";
 
 /// Words of units, and how [`UNITS`] has them.
-const WORDS: [(&str, &str); 21] = [
-    ("pound", "lb"),
-    ("pounds", "lb"),
-    ("lbs", "lb"),
-    ("lbm", "lb"),
-    ("kilograms", "kg"),
-    ("kilogram", "kg"),
-    ("tonnes", "t"),
-    ("tonne", "t"),
-    ("tons", "t"),
-    ("ton", "t"),
-    ("mt", "t"),
-    ("per", ""),
-    ("hr", "h"),
-    ("hour", "h"),
-    ("hrs", "h"),
-    ("sec", "s"),
-    ("second", "s"),
-    ("minute", "min"),
-    ("degrees", "deg"),
-    ("degree", "deg"),
-    ("radians", "rad"),
-];
+const WORDS: &str = "pound=lb pounds=lb lbs=lb lbm=lb kilograms=kg kilogram=kg tonnes=t tonne=t tons=t ton=t \
+    mt=t per= hr=h hour=h hrs=h sec=s second=s minute=min degrees=deg degree=deg radians=rad";
 
 /// "m/s" without its stroke, which in one piece are milliseconds.
 const METERS_PER_SECOND: &str = "ms";
@@ -144,14 +70,11 @@ impl Name {
             };
             let last = pieces[split..].iter().map(|piece| word_of(piece)).collect::<String>();
             let plain = pieces[..split].concat();
-            let is_meant = |word: &str| {
-                word == last
-                    && (word != METERS_PER_SECOND || count == 2)
-                    // "time_m" counts minutes.
-                    && (word != "m" || !plain.ends_with("time"))
-            };
-            if let Some((_, unit)) = UNITS.iter().find(|(word, _)| is_meant(word)) {
-                let (sent, unit) = (sent.to_owned(), Some(*unit));
+            // "time_m" counts minutes.
+            let is_other = (last == METERS_PER_SECOND && count != 2)
+                || (last == "m" && plain.ends_with("time"));
+            if let Some(unit) = called_in(UNITS, &last).filter(|_| !is_other) {
+                let (sent, unit) = (sent.to_owned(), Some(unit));
                 return Self { sent, plain, unit, whole, unknown_unit: None };
             }
         }
@@ -232,14 +155,20 @@ pub(super) fn unit_called(text: &str) -> Option<&'static str> {
     let lower = text.to_lowercase();
     let words = lower.split(|letter: char| !letter.is_alphanumeric());
     let plain: String = words.map(word_of).collect();
-    let is_meant =
-        |word: &str| word == plain && (word != METERS_PER_SECOND || lower.contains(['/', ' ']));
-    as_written.or_else(|| UNITS.iter().find(|(word, _)| is_meant(word)).map(|(_, unit)| *unit))
+    let is_other = plain == METERS_PER_SECOND && !lower.contains(['/', ' ']);
+    as_written.or_else(|| called_in(UNITS, &plain).filter(|_| !is_other))
 }
 
 /// A word of a unit as [`UNITS`] has it.
 fn word_of(word: &str) -> &str {
-    WORDS.iter().find(|(known, _)| *known == word).map_or(word, |(_, word)| word)
+    called_in(WORDS, word).unwrap_or(word)
+}
+
+/// What a table has for a word.
+#[inline(never)]
+fn called_in(table: &'static str, word: &str) -> Option<&'static str> {
+    let mut pairs = table.split(' ').filter_map(|pair| pair.split_once('='));
+    pairs.find(|(known, _)| *known == word).map(|(_, name)| name)
 }
 
 /// The engine of a column named by one of `stems` and a number, a letter or a side; `None` for any other column.

@@ -1,6 +1,6 @@
 //! Rows whose time is far ahead of those before them, behind which the flight goes on where it was.
 //!
-//! Which of the two is wrong is known when as many rows went on in line as there were ahead: the fewer ones are left out.
+//! All of this is rare, and kept out of what reads every row. Which of the two is wrong is known when as many rows went on in line as there were ahead: the fewer ones are left out.
 
 use core::ops::Range;
 use std::sync::Arc;
@@ -42,6 +42,7 @@ impl Recording {
     }
 
     /// Whether the flight goes on at a time that is not behind its last row, because the last rows are ahead; these are then held.
+    #[inline(never)]
     pub(super) fn goes_on_at(&mut self, time_s: f64, layout: &Layout) -> bool {
         let rows = self.time_s.as_slice();
         let from = rows.partition_point(|row_s| *row_s < time_s);
@@ -61,6 +62,7 @@ impl Recording {
     }
 
     /// Whether the row of this time, behind a gap, and those with it are ahead of the rows that come next, and not more than these.
+    #[inline(never)]
     pub(super) fn is_ahead_for_a_while(
         &mut self,
         layout: &Layout,
@@ -94,6 +96,7 @@ impl Recording {
 
     /// Leaves out the rows ahead where as many went on behind them, and those behind where one of them is past the rows ahead or, at
     /// the flight's end, as they are fewer.
+    #[inline(never)]
     pub(super) fn decide(&mut self, layout: &Layout, is_end: bool) -> Option<LeftOut> {
         let Ahead { from, to } = self.ahead?;
         let last = self.time_s.len().checked_sub(1)?;

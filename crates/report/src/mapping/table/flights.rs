@@ -211,6 +211,7 @@ impl Assembly {
         self.current.get_or_insert_with(|| Recording::new(Arc::default(), layout.plan.inputs.len()))
     }
 
+    #[inline(never)]
     fn leave_out(&mut self, layout: &Layout, left_out: LeftOut) -> Result<(), Refusal> {
         // A recording that breaks off in a row is still being copied: its last flight is not whole.
         let is_cut_off = matches!(left_out.1.kind, RefusalKind::LastRowUnfinished { .. });

@@ -93,6 +93,7 @@ impl Recording {
     }
 
     /// A date in a column of its own may stay while the time of day passes midnight, and follow later.
+    #[inline(never)]
     fn pass_midnight(&mut self, sent_s: f64) {
         let Some(last_s) = self.time_s.last() else { return };
         let since_last_s = sent_s + self.days * DAY_S - last_s;
@@ -104,6 +105,7 @@ impl Recording {
     }
 
     /// Seconds since the flight's origin, which its first instant sets.
+    #[inline(never)]
     pub(super) fn seconds(&mut self, layout: &Layout, times: &Times, row: usize) -> f64 {
         match times {
             Times::Seconds(times) => {

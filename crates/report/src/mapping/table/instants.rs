@@ -88,6 +88,7 @@ fn instant(text: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
 }
 
 /// Text of a form as `strptime` names it; an offset in the text counts more than `utc_offset`.
+#[inline(never)]
 pub(super) fn formatted(text: &str, format: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
     let broken = jiff::fmt::strtime::parse(format, text).ok()?;
     if broken.offset().is_some() {
