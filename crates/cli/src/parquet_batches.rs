@@ -216,11 +216,12 @@ impl Table {
                 self.of_any_kind.push(place);
             }
         }
+        let unread = self.unread();
         let group = self.reader.metadata().row_group(self.group);
         let schema = self.reader.metadata().file_metadata().schema_descr();
         for place in wanted {
             let column = schema.column(*place);
-            let kind = kind_of(&column).ok_or_else(|| {
+            let kind = kind_of(&column).filter(|_| !unread.contains(place)).ok_or_else(|| {
                 let reason = format!("column {} is of a type that is not read", column.path());
                 ParquetError::General(reason)
             })?;
