@@ -48,6 +48,7 @@ pub struct GuidePlace {
 
 /// Numbers that are no levels of a guide.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GuideLevelError {
     /// A level.
     #[error("level {0} m: expected pressure altitudes that rise, and shares between -0.5 and 0.5")]
