@@ -12,7 +12,7 @@ use serde::Serialize;
 use units::{Mach, PressureAltitude};
 
 use super::MassAndDay;
-use crate::model_file::ModelFile;
+use crate::model_file::{GuideBook, GuidePlace, ModelFile};
 use crate::prediction::{PointPrediction, Predictor};
 use crate::whole_model::Predicts;
 
@@ -33,6 +33,8 @@ pub enum Informed {
 pub struct OptimumModel<'a> {
     own: ExtendedModel,
     book: Table,
+    /// The book with its factor by level, of a model that has learnt more than a table.
+    by_level: Option<Box<GuideBook>>,
     learnt: Learnt<'a>,
     informed_by_flights: Vec<bool>,
     predictor: Predictor<'a>,
@@ -98,10 +100,12 @@ impl<'a> OptimumModel<'a> {
             }))
         };
         // A table alone goes on from the polynomial: against the guide's rows what that loses of them would be a saving.
-        let book = if model.has_whole_model() { model.reference() } else { &model.initial };
+        let has_whole = model.has_whole_model();
+        let book = if has_whole { model.reference() } else { &model.initial };
         Ok(Self {
             own: model.current()?,
             book: book.drag_table().clone(),
+            by_level: model.guide_book.clone().filter(|_| has_whole),
             learnt,
             informed_by_flights: model
                 .learnt
@@ -152,7 +156,15 @@ impl<'a> OptimumModel<'a> {
         let mach = point.mach.value();
         let informed = self.informed(plain.lift_coefficient, mach)?;
         let cell = SmoothCell::locate(self.book.grid(), plain.lift_coefficient, mach).ok()?;
-        let book_kg_s = by_table(&self.book, &cell, &plain);
+        let by_level = self.by_level.as_ref().map(|book| {
+            let place = GuidePlace {
+                lift_coefficient: plain.lift_coefficient,
+                mach,
+                pressure_altitude: point.pressure_altitude,
+            };
+            by_drag(book.drag_coefficient(&cell, place), &plain)
+        });
+        let book_kg_s = by_level.unwrap_or_else(|| by_table(&self.book, &cell, &plain));
         let (own_kg_s, drawn_kg_s) = self.own_kg_s(point, &cell, plain)?;
         if !(own_kg_s > 0.0 && book_kg_s > 0.0) {
             return None;
@@ -232,8 +244,12 @@ fn point_at(condition: MassAndDay, level: PressureAltitude, mach: f64) -> Flight
 
 /// What is predicted, moved to the smooth surface of a table.
 fn by_table(table: &Table, cell: &SmoothCell, prediction: &Prediction) -> f64 {
+    by_drag(cell.value_of(table), prediction)
+}
+
+fn by_drag(drag_coefficient: f64, prediction: &Prediction) -> f64 {
     prediction.fuel_flow_total.to_kilograms_per_second()
-        + (cell.value_of(table) - prediction.drag_coefficient)
+        + (drag_coefficient - prediction.drag_coefficient)
             * prediction.fuel_flow_per_drag_coefficient_kg_s
 }
 

@@ -3,6 +3,7 @@ use std::fmt::Write;
 use perf_model::{Aircraft, Guide, initial_model};
 
 use super::*;
+use crate::model_file::{GuideBook, GuideLevel, GuideLevels};
 
 /// A guide of a parabolic polar: CD = 0.02 + 0.045 CL², whatever the Mach number, by the TSFC law of the aircraft.
 const CD0: f64 = 0.02;
@@ -277,4 +278,28 @@ fn the_optimum_of_a_whole_model_is_that_of_its_predictions() {
     let most = curve.points.iter().map(|point| range(f64::from(point.mach_thousandths) / 1000.0));
     let most = most.fold(0.0, f64::max);
     assert!(range(found.mach) > 0.999 * most, "{} {most}", range(found.mach));
+}
+
+/// What the book burns more at a level moves its choices and none of the model's own: fuel flow is in proportion to drag.
+#[test]
+fn the_book_of_a_taught_model_has_its_factor_by_level() {
+    let level = PressureAltitude::feet(41_000.0);
+    let file = ModelFile { guide_book: None, ..crate::prediction::tests::whole() };
+    let more = GuideLevel { pressure_altitude_m: level.to_meters(), shares: [0.03, 0.0, 0.0] };
+    let book = GuideBook {
+        drag_table: file.reference().drag_table().clone(),
+        levels: GuideLevels::new([(0.2, 0.6), (0.7, 0.9)], vec![more]).unwrap(),
+    };
+    let with_level = ModelFile { guide_book: Some(Box::new(book)), ..file.clone() };
+    let condition = MassAndDay {
+        mass: Mass::kilograms(32_000.0),
+        isa_deviation: TemperatureDifference::kelvin(0.0),
+    };
+    let curve = |file: &ModelFile| OptimumModel::new(file, 0, 1).unwrap().curve(condition, level);
+    let (without, with) = (curve(&file), curve(&with_level));
+    assert_eq!(with.own_kg_s, without.own_kg_s);
+    assert!(with.book_kg_s.len() > 50);
+    for (more, kg_s) in with.book_kg_s.iter().zip(&without.book_kg_s) {
+        assert!((more / kg_s - 1.03).abs() < 1e-12, "{more} {kg_s}");
+    }
 }
