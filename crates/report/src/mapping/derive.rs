@@ -172,7 +172,7 @@ impl Part<'_> {
     }
 
     fn recorded(&mut self, wanted: Column) -> Option<Series> {
-        let (_, conversion) = self.plan.recorded.iter().find(|(column, _)| *column == wanted)?;
+        let conversion = self.plan.recorded_as(wanted)?;
         let converted = self.converted.iter().position(|one| one.column == wanted);
         Some(match converted.map(|place| self.converted.swap_remove(place)) {
             Some(Converted { values, is_within, .. }) => {

@@ -230,9 +230,15 @@ impl Plan {
         }
     }
 
+    /// How a column that is recorded is converted.
+    pub(super) fn recorded_as(&self, wanted: Column) -> Option<&Conversion> {
+        let found = self.recorded.iter().find(|(column, _)| *column == wanted);
+        found.map(|(_, conversion)| conversion)
+    }
+
     /// The required columns of the report that this layout does not have.
     pub(super) fn missing(&self) -> Vec<MissingColumn> {
-        let is_recorded = |wanted| self.recorded.iter().any(|(column, _)| *column == wanted);
+        let is_recorded = |wanted| self.recorded_as(wanted).is_some();
         let is_assumed = matches!(self.temperature, TemperatureSource::Isa { .. });
         MissingColumn::ALL
             .into_iter()

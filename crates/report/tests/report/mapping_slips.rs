@@ -49,7 +49,7 @@ fn refused(mapping: &Mapping, text: &str) -> String {
     }
 }
 
-fn message<'p>(parsed: &'p Parsed, code: &str) -> &'p str {
+pub(super) fn message<'p>(parsed: &'p Parsed, code: &str) -> &'p str {
     let finding = parsed.findings.iter().find(|finding| finding.code == code);
     finding.map_or("", |finding| finding.message.as_str())
 }

@@ -4,6 +4,8 @@
 
 use report::{Mapping, Parsed};
 
+use super::mapping_slips::message;
+
 const NAMES: &str = "time,alt,sat,mach,tas,gs,ff,tow\n";
 
 fn mapping(start_mass: &str) -> Mapping {
@@ -53,11 +55,6 @@ fn read(start_mass: &str, text: &str) -> Parsed {
         Ok(mut parsed) => parsed.remove(0),
         Err(refusal) => panic!("{refusal}"),
     }
-}
-
-fn message<'p>(parsed: &'p Parsed, code: &str) -> &'p str {
-    let finding = parsed.findings.iter().find(|finding| finding.code == code);
-    finding.map_or("", |finding| finding.message.as_str())
 }
 
 #[test]

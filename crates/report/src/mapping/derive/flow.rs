@@ -72,8 +72,7 @@ impl Part<'_> {
 
     /// Of each row of the recording whether its ground speed is that of an aircraft on the ground.
     fn on_ground(&self) -> Vec<bool> {
-        let is_speed = |(column, _): &&(Column, _)| *column == Column::GroundSpeed;
-        let Some((_, speed)) = self.plan.recorded.iter().find(is_speed) else {
+        let Some(speed) = self.plan.recorded_as(Column::GroundSpeed) else {
             return vec![false; self.recording.time_s.len()];
         };
         let slowest = Column::GroundSpeed.range().minimum.unwrap_or(0.0);

@@ -123,8 +123,7 @@ impl Part<'_> {
     /// Fuel in the tanks at the recording's first row, where the gauges are recorded: what they read first of the rows that are used, and
     /// what was burnt until then.
     fn fuel_by_gauges_kg(&self, burnt_by_row_kg: &[f64]) -> Option<f64> {
-        let is_quantity = |(column, _): &&(Column, _)| *column == Column::FuelQuantity;
-        let (_, quantity) = self.plan.recorded.iter().find(is_quantity)?;
+        let quantity = self.plan.recorded_as(Column::FuelQuantity)?;
         let at = |row: usize| quantity.apply(&self.recording.numbers, row) + burnt_by_row_kg[row];
         self.rows.runs().flatten().map(at).find(|fuel_kg| fuel_kg.is_finite())
     }

@@ -92,8 +92,7 @@ impl Part<'_> {
 
     /// Zero-fuel mass where gross mass and the contents of the tanks are recorded: the difference in the first row that has both.
     pub(super) fn zero_fuel_mass_by_gauges(&self, masses: &Series) -> Option<Mass> {
-        let is_quantity = |(column, _): &&(Column, _)| *column == Column::FuelQuantity;
-        let (_, quantity) = self.plan.recorded.iter().find(is_quantity)?;
+        let quantity = self.plan.recorded_as(Column::FuelQuantity)?;
         let rows = self.rows.runs().flatten().zip(&masses.values);
         let mut zero_fuel_kg =
             rows.map(|(row, mass_kg)| mass_kg - quantity.apply(&self.recording.numbers, row));

@@ -57,9 +57,8 @@ impl Part<'_> {
         start_kg: f64,
     ) -> Vec<(&'static str, String)> {
         let mut doubts = Vec::new();
-        let is_altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
-        let altitude = self.plan.recorded.iter().find(is_altitude);
-        let first_m = altitude.map(|(_, altitude)| altitude.apply(&self.recording.numbers, 0));
+        let altitude = self.plan.recorded_as(Column::PressureAltitude);
+        let first_m = altitude.map(|altitude| altitude.apply(&self.recording.numbers, 0));
         let falls = match start_mass {
             LoadSource::Known(_) => false,
             LoadSource::Columns(conversions) => self.first_sent(conversions, &|_| 0.0).1,

@@ -59,9 +59,9 @@ fn has_another_flight(converter: &Converter, flight: &Recording) -> bool {
         return false;
     }
     let plan = &converter.layout.plan;
-    let altitude = plan.recorded.iter().find(|(column, _)| *column == Column::PressureAltitude);
+    let altitude = plan.recorded_as(Column::PressureAltitude);
     let of_row = |row: usize| {
-        let altitude_m = altitude.map(|(_, altitude)| altitude.apply(&flight.numbers, row));
+        let altitude_m = altitude.map(|altitude| altitude.apply(&flight.numbers, row));
         let mass_kg = plan.gross_mass().map(|mass| mass.apply(&flight.numbers, row));
         (altitude_m.unwrap_or(f64::NAN), mass_kg.unwrap_or(f64::NAN))
     };

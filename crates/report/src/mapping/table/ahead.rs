@@ -1,6 +1,7 @@
 //! Rows whose time is far ahead of those before them, behind which the flight goes on where it was.
 //!
-//! All of this is rare, and kept out of what reads every row. Which of the two is wrong is known when as many rows went on in line as there were ahead: the fewer ones are left out.
+//! All of this is rare, and kept out of what reads every row. Which of the two is wrong is known when as many rows went on in line
+//! as there were ahead: the fewer ones are left out.
 
 use core::ops::Range;
 use std::sync::Arc;
