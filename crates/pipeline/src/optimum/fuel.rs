@@ -34,7 +34,7 @@ pub struct OptimumModel<'a> {
     own: ExtendedModel,
     book: Table,
     /// The book with its factor by level, of a model that has learnt more than a table.
-    by_level: Option<Box<GuideBook>>,
+    by_level: Option<&'a GuideBook>,
     learnt: Learnt<'a>,
     informed_by_flights: Vec<bool>,
     predictor: Predictor<'a>,
@@ -105,7 +105,7 @@ impl<'a> OptimumModel<'a> {
         Ok(Self {
             own: model.current()?,
             book: book.drag_table().clone(),
-            by_level: model.guide_book.clone().filter(|_| has_whole),
+            by_level: model.guide_book.as_deref().filter(|_| has_whole),
             learnt,
             informed_by_flights: model
                 .learnt
@@ -156,7 +156,7 @@ impl<'a> OptimumModel<'a> {
         let mach = point.mach.value();
         let informed = self.informed(plain.lift_coefficient, mach)?;
         let cell = SmoothCell::locate(self.book.grid(), plain.lift_coefficient, mach).ok()?;
-        let by_level = self.by_level.as_ref().map(|book| {
+        let by_level = self.by_level.map(|book| {
             let place = GuidePlace {
                 lift_coefficient: plain.lift_coefficient,
                 mach,
