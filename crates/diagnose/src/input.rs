@@ -1,6 +1,6 @@
 //! What is diagnosed, against what, and what to look for.
 
-use effects::{EffectReferences, ExtendedModel};
+use effects::{BetweenNodes, EffectReferences, ExtendedModel};
 use flight::effect::EffectId;
 
 use crate::baseline::Baseline;
@@ -15,6 +15,8 @@ pub struct Input<'a> {
     pub model: &'a ExtendedModel,
     /// Its drag table: its own, or the adapted one.
     pub drag_table: &'a lut::Table,
+    /// What that table is between its nodes; with a baseline, what it was when that was learnt.
+    pub between_nodes: BetweenNodes,
     /// Flights in order of flying, none of which the table has learnt.
     pub flights: &'a [FlightRecord<'a>],
     /// What the model remembers of clean flights; `None` against a table alone.
@@ -34,6 +36,7 @@ impl<'a> Input<'a> {
         Self {
             model,
             drag_table: model.drag_table(),
+            between_nodes: BetweenNodes::Straight,
             flights,
             baseline: None,
             table: None,

@@ -308,7 +308,13 @@ impl ExtendedModel {
         contained: &[Terms],
     ) -> Result<Response, EffectError> {
         let polar = self.prepared().map_or(*self.polynomial(), |prepared| prepared.polar);
-        let bare = Bare { aircraft: self.aircraft(), drag_table, polar, smooth: None };
+        let bare = Bare {
+            aircraft: self.aircraft(),
+            drag_table,
+            polar,
+            levels: self.base.levels(),
+            smooth: None,
+        };
         // References are for trial effects, and there are none.
         let trial = Terms::new(&Effects::none(), &EffectReferences::UNUSED);
         let layers = Layers { contained, trial: &trial };

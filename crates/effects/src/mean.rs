@@ -24,6 +24,7 @@ pub fn mean_references(
         aircraft,
         drag_table,
         polar: Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] },
+        levels: None,
         smooth: None,
     };
     let none = Terms::new(&Effects::none(), &EffectReferences::UNUSED);

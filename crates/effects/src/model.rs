@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use flight::SegmentMeans;
 use flight::effect::EffectId;
 use lut::{SmoothTable, Table};
-use perf_model::Aircraft;
+use perf_model::{Aircraft, GuideLevels};
 
 use crate::applied::{AppliedEffects, Prepared};
 use crate::error::{EffectError, EffectModelError};
@@ -58,6 +58,7 @@ impl<'a> EffectModel<'a> {
                 aircraft: model.aircraft(),
                 drag_table,
                 polar: fit_polar(drag_table)?,
+                levels: model.base().levels(),
                 smooth: None,
             },
             references,
@@ -127,6 +128,12 @@ impl<'a> EffectModel<'a> {
     #[must_use]
     pub const fn aircraft(&self) -> &Aircraft {
         self.bare.aircraft
+    }
+
+    /// By how much drag differs by level from the table; `None` where it does not.
+    #[must_use]
+    pub const fn levels(&self) -> Option<&'a GuideLevels> {
+        self.bare.levels
     }
 
     /// The drag table.

@@ -3,9 +3,9 @@
 use flight::MAXIMUM_ENGINES;
 use lut::surface::Surface;
 use lut::{Axis, Outside, SmoothTable, Table};
-use perf_model::Aircraft;
 use perf_model::tsfc::tsfc;
-use units::Mach;
+use perf_model::{Aircraft, GuideLevels, GuidePlace};
+use units::{Mach, PressureAltitude};
 
 use crate::drag::{self, AtTable};
 use crate::engine::{self, Thrust};
@@ -50,8 +50,19 @@ pub(crate) struct Bare<'a> {
     pub(crate) drag_table: &'a Table,
     /// CD0(M) and K(M), of which some effects are a share.
     pub(crate) polar: Surface,
+    /// By how much drag differs by level from the table.
+    pub(crate) levels: Option<&'a GuideLevels>,
     /// The surface between the table's nodes, where that is smooth.
     pub(crate) smooth: Option<SmoothTable>,
+}
+
+impl Bare<'_> {
+    /// Of the table, times the factor by level.
+    fn drag_coefficient(&self, place: GuidePlace, edge: Edge) -> Result<f64, EffectError> {
+        let surface = (self.drag_table, self.smooth.as_ref());
+        let of_table = table_value(surface, place.lift_coefficient, place.mach, edge)?;
+        Ok(self.levels.map_or(of_table, |levels| of_table * levels.factor(place)))
+    }
 }
 
 /// What a drag table is between its nodes.
@@ -123,11 +134,13 @@ pub(crate) fn evaluate(
     let surface_n = flown.dynamic_pressure_pa * bare.aircraft.wing_area().to_square_meters();
     let lift_coefficient = flown.mass_kg * gravity_m_s2 / surface_n;
     let cached = uncorrected.filter(|_| !layers.trial.moves_the_point());
-    let surface = (bare.drag_table, bare.smooth.as_ref());
-    let table = match cached.and_then(|known| known.table) {
-        Some(table) => table,
-        None => table_value(surface, lift_coefficient, flown.mach, edge)?,
+    let place = GuidePlace {
+        lift_coefficient,
+        mach: flown.mach,
+        pressure_altitude: PressureAltitude::meters(point.pressure_altitude_m),
     };
+    let cached = cached.and_then(|known| known.table);
+    let table = cached.map_or_else(|| bare.drag_coefficient(place, edge), Ok)?;
     let at = AtTable { drag_coefficient: table, lift_coefficient, polar: &bare.polar };
     let of_effects = drag::drag_coefficient(at, point, &flown, layers);
     let path_force_n = drag::path_force_n(point, &flown, layers);

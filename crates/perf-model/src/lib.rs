@@ -48,6 +48,7 @@ pub mod forces;
 pub mod fuel_flow;
 mod guide;
 pub mod initial;
+mod levels;
 pub mod model;
 mod points;
 pub mod poll_schumann;
@@ -60,6 +61,7 @@ pub use aircraft::{Aircraft, AircraftError};
 pub use csv_text::{CsvColumn, CsvError, CsvErrorReason, open_quote};
 pub use guide::{Guide, GuidePoint};
 pub use initial::{InitialModel, InitialModelError, initial_model};
+pub use levels::{GuideLevel, GuideLevelError, GuideLevels, GuidePlace, guide_terms};
 pub use model::{
     LevelBlock, LevelFlights, LevelPrediction, ModelError, ObserveError, OutsideTable,
     PerformanceModel, PredictError, Prediction, SegmentPrediction,

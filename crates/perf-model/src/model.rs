@@ -5,9 +5,10 @@ use std::sync::Arc;
 use flight::Segment;
 use lut::surface::Surface;
 use lut::{Cell, Cells, Grid, Outside, OutsideGrid, Table};
-use units::OutOfDomain;
+use units::{OutOfDomain, PressureAltitude};
 
 use crate::Aircraft;
+use crate::levels::{GuideLevels, GuidePlace};
 use crate::state::SegmentState;
 
 mod level_flight;
@@ -29,6 +30,7 @@ pub struct PerformanceModel {
     polynomial: Surface,
     drag_table: Table,
     extrapolated: Vec<bool>,
+    levels: Option<Box<GuideLevels>>,
 }
 
 /// Why parts do not make a performance model.
@@ -107,7 +109,7 @@ impl PerformanceModel {
             }
         }
         check_drag_table(&aircraft, &drag_table)?;
-        Ok(Self { aircraft, polynomial, drag_table, extrapolated })
+        Ok(Self { aircraft, polynomial, drag_table, extrapolated, levels: None })
     }
 
     /// The same model with another drag table, for example an adapted one.
@@ -117,6 +119,25 @@ impl PerformanceModel {
     pub fn with_drag_table(&self, drag_table: Table) -> Result<Self, ModelError> {
         check_drag_table(&self.aircraft, &drag_table)?;
         Ok(Self { drag_table, ..self.clone() })
+    }
+
+    /// The same model with a factor on the drag of the table by level. Predictions have it, and an observation is without it, as the
+    /// table is.
+    #[must_use]
+    pub fn with_levels(self, levels: GuideLevels) -> Self {
+        Self { levels: Some(Box::new(levels)), ..self }
+    }
+
+    /// By how much drag differs by level from the table; `None` where it does not.
+    #[must_use]
+    pub fn levels(&self) -> Option<&GuideLevels> {
+        self.levels.as_deref()
+    }
+
+    /// The factor on the drag of the table.
+    fn factor(&self, lift_coefficient: f64, mach: f64, pressure_altitude: PressureAltitude) -> f64 {
+        let place = GuidePlace { lift_coefficient, mach, pressure_altitude };
+        self.levels.as_deref().map_or(1.0, |levels| levels.factor(place))
     }
 
     /// The aircraft.

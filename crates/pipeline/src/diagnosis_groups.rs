@@ -11,11 +11,12 @@ use flight::effect::EffectId;
 use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use crate::diagnosis_figures::DiagnosisFigures;
 use crate::diagnosis_months::months;
+use crate::export::rows_missed;
 use crate::model_file::ModelFile;
 use crate::monitoring::Event;
 use crate::reading::{FlightRead, Reading, RefusedReport};
 use crate::table_uncertainty;
-use crate::whole_model::Predicts;
+use crate::whole_model::{HeldAgainst, Predicts};
 
 /// Flights that are diagnosed together, and the model that they are compared with.
 #[derive(Clone, Debug)]
@@ -140,10 +141,11 @@ impl Group<'_> {
         let baseline = self.baseline();
         let baseline = baseline.as_deref();
         let events_s = self.events_s(&asked.events);
-        let (model, drag_table) = self.model.held_against(predicts);
+        let HeldAgainst { model, drag_table, between_nodes } = self.model.held_against(predicts);
         let input = Input {
             model,
             drag_table,
+            between_nodes,
             flights: &records,
             baseline: if asked.table_only { None } else { baseline },
             table: table.as_ref(),
@@ -227,18 +229,10 @@ impl Group<'_> {
 
     /// Which drag a model is held against that has learnt nothing, where it is not that of its predictions.
     fn note_of_guide(&self) -> Option<String> {
-        let rows = self.model.untaught_rows()?.drag_table();
-        let polynomial = self.model.initial.drag_table();
-        let extrapolated = self.model.initial.extrapolated();
-        let squares: Vec<f64> = (0..polynomial.grid().nodes())
-            .filter(|&node| !extrapolated[node])
-            .map(|node| (polynomial.value_at_node(node) / rows.value_at_node(node) - 1.0).powi(2))
-            .collect();
-        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+        let [rms, _] = rows_missed(self.model)?;
         Some(format!(
             "flights are held against the drag of the guide's rows; the polynomial, by which predict and evaluate go until flights are \
-             learnt, is {:.1} % off these (rms over the guide's range)",
-            100.0 * mean.sqrt()
+             learnt, is {rms:.1} % off these (rms over the guide's range)"
         ))
     }
 

@@ -12,7 +12,7 @@ use units::PressureAltitude;
 
 use crate::fuel_factor;
 use crate::learning::{LearningCurve, curve_of};
-use crate::model_file::{GuidePlace, ModelFile};
+use crate::model_file::ModelFile;
 use crate::not_evaluated;
 use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
@@ -278,7 +278,7 @@ pub fn evaluate_book(
         return evaluate(book, book.drag_table(), segments);
     }
     let of_segment = |segment: &Segment| match book.observe(segment) {
-        Ok(observation) => Some(by_book(model, book.drag_table(), segment, &observation)),
+        Ok(observation) => Some(by_book(book.drag_table(), segment, &observation)),
         Err(_) => without_errors(book, segment),
     };
     segments.iter().map(of_segment).collect()
@@ -312,13 +312,16 @@ fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Seg
             book: evaluate_book(model, BookEffects::OfModel, segments),
         };
     }
-    let book = model.by_guide.as_ref().map(|guide| guide.drag_table());
+    let book = model.by_guide.as_ref().map(|_| model.reference());
     let mut found = ByTables::default();
     for segment in segments {
         let (by_initial, by_learnt, by_guide) = if let Ok(observation) = initial.observe(segment) {
             let by = |table| Some(evaluated(table, segment, &observation));
             let by_initial = by(table);
-            let by_guide = book.map(|book| by_book(model, book, segment, &observation));
+            let by_guide = book.map(|book| {
+                let of_table = without_levels(book, segment, &observation);
+                by_book(book.drag_table(), segment, &of_table)
+            });
             (by_initial, learnt.and_then(by), by_guide.or(by_initial))
         } else {
             let state = without_errors(initial, segment);
@@ -333,25 +336,25 @@ fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Seg
     found
 }
 
-/// By the guide with a factor by level where the model has it, else by this drag of its rows.
-fn by_book(
-    model: &ModelFile,
-    drag_table: &Table,
+/// What a model without levels observes, as the book's table has it.
+fn without_levels(
+    book: &ExtendedModel,
     segment: &Segment,
     observation: &Observation,
-) -> Evaluated {
+) -> Observation {
+    let level = PressureAltitude::meters(segment.means.pressure_altitude_m);
+    match book.base().levels() {
+        Some(levels) => levels.of_table(observation, level),
+        None => *observation,
+    }
+}
+
+/// By the drag of the guide's rows, smooth between the nodes.
+fn by_book(drag_table: &Table, segment: &Segment, observation: &Observation) -> Evaluated {
     let cell =
         SmoothCell::locate(drag_table.grid(), observation.lift_coefficient, observation.mach);
-    let place = GuidePlace {
-        lift_coefficient: observation.lift_coefficient,
-        mach: observation.mach,
-        pressure_altitude: PressureAltitude::meters(segment.means.pressure_altitude_m),
-    };
-    let by_rows = |cell: SmoothCell| match &model.guide_book {
-        Some(book) => book.drag_coefficient(&cell, place),
-        None => cell.value_of(drag_table),
-    };
-    let error = cell.ok().map(|cell| paper::error_percent_of(by_rows(cell), observation));
+    let error =
+        cell.ok().map(|cell| paper::error_percent_of(cell.value_of(drag_table), observation));
     with_error(segment, observation, error)
 }
 

@@ -13,6 +13,12 @@ pub use json::{SCHEMA, json};
 pub use openap::{OpenapError, OpenapPolar, openap};
 pub use remainder::{LeftOut, remainder_left_out};
 
+use atmos::constants::RATIO_OF_SPECIFIC_HEATS;
+use atmos::isa;
+use perf_model::{GuideLevels, GuidePlace};
+use units::PressureAltitude;
+use units::convert::STANDARD_GRAVITY_M_S2;
+
 use crate::model_file::ModelFile;
 use crate::summary::counted;
 
@@ -30,14 +36,39 @@ pub(crate) fn informed(model: &ModelFile) -> Vec<bool> {
 
 /// What the table of a model that has learnt nothing, the polynomial through its guide's rows, misses of the drag of these rows at
 /// the nodes within the guide, %: root mean square, and the largest; `None` once a segment has taught it, and where the file does
-/// not keep the rows.
+/// not keep the rows. Where drag has a factor by level, at every level at which the guide has the node's mass.
 #[must_use]
 pub fn rows_missed(model: &ModelFile) -> Option<[f64; 2]> {
-    let rows = model.untaught_rows()?.drag_table().values();
-    let nodes = model.initial.drag_table().values().iter().zip(rows);
-    let nodes = nodes.zip(model.initial.extrapolated()).filter(|(_, extrapolated)| !**extrapolated);
-    let percents = nodes.map(|((polynomial, row), _)| 100.0 * (polynomial / row - 1.0));
-    rms_and_largest(&percents.collect::<Vec<f64>>())
+    let rows = model.untaught_rows()?;
+    let polynomial = model.initial.drag_table();
+    let extrapolated = model.initial.extrapolated();
+    let mut percents = Vec::new();
+    for node in (0..polynomial.grid().nodes()).filter(|&node| !extrapolated[node]) {
+        let by_polynomial = polynomial.value_at_node(node);
+        let by_rows = rows.drag_table().value_at_node(node);
+        let percent = |factor: f64| 100.0 * (by_polynomial / (factor * by_rows) - 1.0);
+        match rows.base().levels() {
+            Some(levels) => percents.extend(factors_at(model, levels, node).map(percent)),
+            None => percents.push(percent(1.0)),
+        }
+    }
+    rms_and_largest(&percents)
+}
+
+/// Factors at a node, by the levels at which the guide has its mass.
+fn factors_at(model: &ModelFile, levels: &GuideLevels, node: usize) -> impl Iterator<Item = f64> {
+    let (lift_coefficient, mach) = model.grid().coordinates(node);
+    let area = model.initial.aircraft().wing_area().to_square_meters();
+    let masses_kg = model.guide.mass_kg;
+    levels.levels().iter().filter_map(move |level| {
+        let pressure_altitude = PressureAltitude::meters(level.pressure_altitude_m);
+        let pressure = isa::pressure(pressure_altitude).ok()?.to_pascals();
+        let dynamic_pressure = 0.5 * RATIO_OF_SPECIFIC_HEATS * pressure * mach * mach;
+        let mass_kg = lift_coefficient * dynamic_pressure * area / STANDARD_GRAVITY_M_S2;
+        let is_printed = masses_kg.is_none_or(|(low, high)| (low..=high).contains(&mass_kg));
+        let place = GuidePlace { lift_coefficient, mach, pressure_altitude };
+        is_printed.then(|| levels.factor(place))
+    })
 }
 
 /// Root mean square of what an export misses, and the largest of it without its sign; `None` of nothing.

@@ -13,7 +13,7 @@ use crate::diagnosis_groups::{Group, GroupError, GroupErrorReason};
 use crate::model_file::{AppliedRecord, DiagnosisRecord};
 use crate::statistics::NORMAL_95;
 use crate::table_uncertainty;
-use crate::whole_model::Predicts;
+use crate::whole_model::{HeldAgainst, Predicts};
 
 mod document;
 mod tables;
@@ -154,10 +154,11 @@ impl Group<'_> {
             ModelOf::Tail => None,
         };
         let baseline = of_type.as_ref().or(own.as_deref());
-        let (model, drag_table) = self.model.held_against(predicts);
+        let HeldAgainst { model, drag_table, between_nodes } = self.model.held_against(predicts);
         let input = Input {
             model,
             drag_table,
+            between_nodes,
             flights: records,
             baseline: if asked.table_only { None } else { baseline },
             table: table.as_ref(),

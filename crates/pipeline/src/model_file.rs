@@ -15,7 +15,6 @@ mod text;
 pub use applied::{AppliedRecord, DiagnosisRecord};
 use differences::told_against;
 pub use error::{ModelTextError, ModelValueError};
-pub use guide_levels::{GuideBook, GuideLevel, GuideLevelError, GuideLevels, GuidePlace};
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -36,8 +35,9 @@ use crate::condition_means::ConditionMeans;
 /// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read. Models without a
 /// baseline are written as format 1. 3: factors of the noise multiply what the aircraft file states of flights and of drift, too;
 /// those of format 2 stand for it. 4: a baseline refers to the drag of the guide's rows, where the file has it; models without that drag
-/// are written as format 3 or 1. 5: a baseline has a term for the force along the path.
-pub const FORMAT: u32 = 5;
+/// are written as format 3 or 1. 5: a baseline has a term for the force along the path. 6: the drag of the guide's rows has a factor by
+/// level.
+pub const FORMAT: u32 = 6;
 
 /// A model, and what it has learnt.
 #[derive(Clone, Debug)]
@@ -54,9 +54,6 @@ pub struct ModelFile {
     pub applied: Vec<AppliedRecord>,
     /// The initial model with the drag of the guide's own rows; see [`reference`](Self::reference).
     pub by_guide: Option<Box<ExtendedModel>>,
-    /// The guide with a factor by level; `None` where levels say nothing, and in files of programs that did not keep it:
-    /// then the drag of `by_guide` is the book.
-    pub guide_book: Option<Box<GuideBook>>,
 }
 
 /// What the initial model's guide was like, and how well the polynomial fits it.
@@ -241,8 +238,7 @@ impl ModelFile {
             residual_rms: initial.fit.residual_rms,
             condition_number: initial.fit.condition_number,
         };
-        let found = guide_drag::with_drag_of_guide(initial, guide, &record);
-        let (by_guide, guide_book) = found.unzip();
+        let by_guide = guide_drag::with_drag_of_guide(initial, guide, &record);
         if by_guide.is_none() {
             tracing::warn!(
                 "the guide's rows make no drag table of their own: what is learnt refers to the polynomial"
@@ -255,12 +251,12 @@ impl ModelFile {
             learnt: None,
             applied: Vec::new(),
             by_guide: by_guide.map(|model| Box::new(model.into())),
-            guide_book: guide_book.flatten().map(Box::new),
         }
     }
 
-    /// What everything learnt beside a law's table refers to: the initial model with the drag of the guide's own rows, which six
-    /// coefficients do not hold; the initial model itself in files of programs that did not keep it. `[bayes.14]`
+    /// What everything learnt beside a law's table refers to, and the book that fuel factors, monitors and savings are counted from: the initial model with the drag of the guide's own rows, which six
+    /// coefficients do not hold, and its factor by level; the initial model itself in files of programs that did not keep it.
+    /// `[bayes.14]`, `[bayes.16]`
     pub fn reference(&self) -> &ExtendedModel {
         self.by_guide.as_deref().unwrap_or(&self.initial)
     }

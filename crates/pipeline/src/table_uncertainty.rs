@@ -7,7 +7,7 @@ use diagnose::{FlightRecord, GuideStates, TableUncertainty, TableUncertaintyErro
 use effects::{ExtendedModel, GuideRange, lost_rises};
 
 use crate::model_file::{GuideRecord, ModelFile};
-use crate::whole_model::Predicts;
+use crate::whole_model::{HeldAgainst, Predicts};
 
 /// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
 const NODES_WITH_COVARIANCE: usize = 700;
@@ -30,7 +30,7 @@ pub fn of_model(
     if has_whole_model && predicts == Predicts::WholeModel {
         return Ok(None);
     }
-    let (initial, table) = model.held_against(predicts);
+    let HeldAgainst { model: initial, drag_table: table, .. } = model.held_against(predicts);
     let settings = model.settings.bayes;
     let belief = Belief { model: initial, settings, guide: Some(&model.guide) };
     let is_exact = initial.aircraft().table_uncertainty_percent() == Some(0.0);

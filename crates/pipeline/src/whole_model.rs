@@ -2,7 +2,7 @@
 
 use adapt::bayes::{BayesSettings, BayesState, InitialError, Posterior, SolveError};
 use diagnose::{TableUncertainty, TableUncertaintyError, WholeModel, WholePrediction};
-use effects::ExtendedModel;
+use effects::{BetweenNodes, ExtendedModel};
 use flight::Segment;
 use lut::{Outside, Table};
 
@@ -25,6 +25,17 @@ impl Predicts {
     }
 }
 
+/// What flights are held against.
+#[derive(Clone, Copy, Debug)]
+pub struct HeldAgainst<'a> {
+    /// The model.
+    pub model: &'a ExtendedModel,
+    /// Its drag table.
+    pub drag_table: &'a Table,
+    /// What that is between its nodes.
+    pub between_nodes: BetweenNodes,
+}
+
 impl ModelFile {
     /// The model with everything that it has learnt; `None` where it has learnt no more than a table, or where only the table
     /// is asked for.
@@ -37,15 +48,20 @@ impl ModelFile {
         WholeModel::new(self.reference(), baseline).ok()
     }
 
-    /// The model and the table that flights are held against together with what the model has learnt: what everything learnt refers
-    /// to, which before any flight is what the guide's rows say; the initial model with the learnt table where there is nothing else.
-    pub fn held_against(&self, predicts: Predicts) -> (&ExtendedModel, &Table) {
+    /// What flights are held against together with what the model has learnt: what everything learnt refers to, which before any flight
+    /// is what the guide's rows say, smooth between the nodes; the initial model with the learnt table where there is nothing else.
+    pub fn held_against(&self, predicts: Predicts) -> HeldAgainst<'_> {
         let has_table_alone = self.has_learnt_segments() && !self.has_whole_model();
         if has_table_alone || predicts == Predicts::TableOnly {
-            (&self.initial, self.drag_coefficient())
-        } else {
-            (self.reference(), self.reference().drag_table())
+            let (model, drag_table) = (&self.initial, self.drag_coefficient());
+            return HeldAgainst { model, drag_table, between_nodes: BetweenNodes::Straight };
         }
+        let model = self.reference();
+        let between_nodes = match self.by_guide {
+            Some(_) => BetweenNodes::Smooth,
+            None => BetweenNodes::Straight,
+        };
+        HeldAgainst { model, drag_table: model.drag_table(), between_nodes }
     }
 
     /// Whether more than a table was learnt.

@@ -5,7 +5,7 @@ use diagnose::{
     Baseline, Diagnosis, FlightRecord, Input, KnownClutter, Options, TableUncertainty, WholeModel,
     attainable, diagnose,
 };
-use effects::ExtendedModel;
+use effects::{BetweenNodes, ExtendedModel};
 use flight::Segment;
 use flight::effect::EffectId;
 use lut::Table;
@@ -13,7 +13,7 @@ use pipeline::learning::{self, FlightToLearn, LawChoice};
 use pipeline::model_file::{LawState, LedgerEntry, ModelFile};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
-use pipeline::whole_model::{Predicts, ln_gap_of};
+use pipeline::whole_model::{HeldAgainst, Predicts, ln_gap_of};
 use segmenter::TrimCriteria;
 use simulate::Scatter;
 use simulate::study::DragError;
@@ -32,6 +32,7 @@ pub struct DiagnosisInputs {
     model: ExtendedModel,
     /// The adapted drag table; the model's own where nothing was learnt.
     drag_table: Table,
+    between_nodes: BetweenNodes,
     baseline: Option<Baseline>,
     uncertainty: Option<TableUncertainty>,
     flights: Vec<ReducedFlight>,
@@ -72,7 +73,8 @@ impl DiagnosisInputs {
     /// A model that no flight has taught, every node of its table taken as known.
     fn untaught(model: ExtendedModel, flights: Vec<ReducedFlight>) -> Self {
         let drag_table = model.drag_table().clone();
-        Self { model, drag_table, baseline: None, uncertainty: None, flights }
+        let between_nodes = BetweenNodes::Straight;
+        Self { model, drag_table, between_nodes, baseline: None, uncertainty: None, flights }
     }
 
     /// A table that no flight has taught, with what law `bayes` believes of a guide's drag.
@@ -88,8 +90,8 @@ impl DiagnosisInputs {
     fn of_guide(model: &ModelFile, flights: Vec<ReducedFlight>) -> Result<Self, CaseFailure> {
         let whole = Predicts::WholeModel;
         let uncertainty = table_uncertainty::of_model(model, whole, &records(&flights))?;
-        let (held_against, _) = model.held_against(whole);
-        Ok(Self { uncertainty, ..Self::untaught(held_against.clone(), flights) })
+        let HeldAgainst { model, between_nodes, .. } = model.held_against(whole);
+        Ok(Self { between_nodes, uncertainty, ..Self::untaught(model.clone(), flights) })
     }
 
     /// The diagnosis, with these effects struck from the library.
@@ -149,6 +151,7 @@ impl DiagnosisInputs {
         Input {
             model: &self.model,
             drag_table: &self.drag_table,
+            between_nodes: self.between_nodes,
             flights: records,
             baseline: self.baseline.as_ref(),
             table: self.uncertainty.as_ref(),
@@ -213,6 +216,7 @@ pub(crate) fn adapted(
             Some(_) => initial.drag_table().clone(),
             None => learnt.law.drag_coefficient().clone(),
         },
+        between_nodes: BetweenNodes::Straight,
         baseline: learnt.baseline,
         uncertainty,
         model: initial,

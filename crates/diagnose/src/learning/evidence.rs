@@ -250,7 +250,11 @@ impl<'a> Evidence<'a> {
             return points;
         }
         let of_all = self.ln_evidence(&likeliest);
-        let level_alone = self.likeliest_of(NOISE_DIALS, likeliest.of_level_alone(), &NOISE_STEPS);
+        let of_level_alone = likeliest.of_level_alone();
+        let by_itself = self.likeliest_of(NOISE_DIALS, of_level_alone, &NOISE_STEPS);
+        // Scatter between flights stays: were it three times as large, as the likeliest of a level alone may have it, errors of
+        // mass would make up for trends within flights, and the level would lie outside what any flight has shown.
+        let level_alone = Dials { within: by_itself.within, ..of_level_alone };
         let of_level = self.ln_evidence(&level_alone) - self.ln_prior_of_scales(&level_alone);
         let open = deviations[NOISE_DIALS..].iter().zip(SCALE_LN_DEVIATIONS).take(scales);
         let volume: f64 = open.map(|(deviation, prior)| (deviation / prior).ln()).sum();

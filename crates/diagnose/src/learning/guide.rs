@@ -33,7 +33,7 @@ const JITTER: f64 = 1e-3;
 /// g_i = f(CL_i, M_i) − f(CL̄, M̄) ~ N(0, C),   C = s²·exp(−½(ΔCL/0.1)² − ½(ΔM/0.03)²)                    [baseline.10]
 /// ```
 ///
-/// f is the mean over the guide's levels at which its masses are flown: its drag table is one over its levels too. What the
+/// f is the mean over the guide's levels at which its masses are flown: how far it is off is asked over both alone. What the
 /// coefficients do not hold of f, where nothing was flown, is added to C: the smooth functions' processes, and the nodes' own.
 pub(super) struct Guide {
     departures: Vec<Departure>,

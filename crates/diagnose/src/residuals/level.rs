@@ -10,6 +10,7 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
+mod by_level;
 mod directions;
 mod drag;
 mod functions;
@@ -25,14 +26,14 @@ use units::{Mach, Mass, PressureAltitude};
 use crate::baseline::Baseline;
 use crate::baseline::smooth::BEYOND_BY_ROUNDING;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
-use crate::math::lanes::{LANES, Lanes, add, map};
+use crate::math::lanes::{LANES, Lanes, add, each, map};
 use crate::math::vector_ln_exp::{NEAR, exp, ln, ln_of_near};
 use crate::residuals::level::directions::{Directions, MOST_RISES};
 use crate::residuals::level::drag::Drag;
 use crate::residuals::level::functions::{Functions, Values};
 use crate::residuals::level::noise::{At, Noise};
 use crate::residuals::level::states::States;
-use crate::signals::noise::Statistics;
+use crate::signals::noise::{ALTITUDE_STEP_M, Statistics};
 
 /// A whole model, prepared for many such points.
 #[derive(Clone, Debug)]
@@ -106,7 +107,11 @@ impl WholeModelOfLevels {
             without_input.iter().filter_map(|place| values.get(*place)).sum()
         };
         Some(Self {
-            drag: Drag::new(model.drag_table(), baseline.between_nodes(), learnt)?,
+            drag: Drag::new(
+                (model.drag_table(), model.levels()),
+                baseline.between_nodes(),
+                learnt,
+            )?,
             directions: Directions::new(baseline, &functions, &places)?,
             functions,
             rises,
@@ -166,22 +171,26 @@ impl pulp::NullaryFnOnce for Compute<'_> {
     fn call(self) -> LevelAnswers {
         let Self { model, block, .. } = self;
         let mut is_known = block.is_known;
+        let planes = model.drag.planes(block, 0.0);
+        let planes = planes.as_ref();
         let (drag, along_lift) = if self.of_variances {
-            let (drag, along_lift) = model.drag.of_block_along_lift(block, &mut is_known);
+            let (drag, along_lift) = model.drag.of_block_along_lift(block, planes, &mut is_known);
             (drag, Some(along_lift))
         } else {
-            (model.drag.of_block(block, &mut is_known), None)
+            (model.drag.of_block(block, planes, &mut is_known), None)
         };
         let states = States::of(block, &drag.coefficient);
         let slopes = model.slopes_of_rises(&states, &drag.coefficient);
         let (remainder, beyond, variance) = if let Some(along_lift) = &along_lift {
-            let sides = model.noise.mach_sides(&model.drag, (block, &states), &mut is_known);
+            let table = (&model.drag, planes);
+            let sides = model.noise.mach_sides(table, (block, &states), &mut is_known);
             let values = model.functions.values(&states, &sides);
             let at = At {
                 block,
                 states: &states,
                 drag: &drag,
                 along_lift,
+                factor_along_altitude: &model.factor_along_altitude(block),
                 slopes: &model.functions.slopes(&values, &states),
                 sides: &sides,
                 rise_by_mach: &values.rise_by_mach,
@@ -231,6 +240,17 @@ impl Compute<'_> {
 }
 
 impl WholeModelOfLevels {
+    /// Slopes of ln of the factor by level along the pressure altitude, by the step by which single predictions take them: levels
+    /// are where it bends.
+    fn factor_along_altitude(&self, block: &LevelBlock) -> Lanes {
+        let at = (&block.lift_coefficient, &block.mach);
+        let side = |by_m| self.drag.planes(block, by_m).map(|planes| planes.factor(at));
+        let (Some(above), Some(below)) = (side(ALTITUDE_STEP_M), side(-ALTITUDE_STEP_M)) else {
+            return [0.0; LANES];
+        };
+        each(&above, &below, |above, below| ln(above / below) / (2.0 * ALTITUDE_STEP_M))
+    }
+
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
     fn slopes_of_rises(&self, states: &States, drag: &Lanes) -> [Lanes; MOST_RISES] {

@@ -1,6 +1,6 @@
 //! What flights are compared with.
 
-use effects::{BetweenNodes, EffectModel, EffectReferences};
+use effects::{EffectModel, EffectReferences};
 
 use crate::baseline::Baseline;
 use crate::input::Input;
@@ -31,11 +31,6 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// What the drag table is between its nodes: as it was when the baseline was learnt, bilinear where there is none.
-    pub(crate) fn between_nodes(self) -> BetweenNodes {
-        self.baseline().map_or(BetweenNodes::Straight, Baseline::between_nodes)
-    }
-
     pub(crate) fn statistics(self, model: &EffectModel<'_>) -> Statistics {
         let factors = self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise());
         Statistics::of(&factors, model.aircraft().sensors())
@@ -48,12 +43,13 @@ impl<'a> Input<'a> {
         Reference::from_baseline(self.baseline)
     }
 
-    /// The model with effects, its table between the nodes what it was when the baseline was learnt.
+    /// The model with effects, its table between the nodes what it is said to be, or was when the baseline was learnt.
     pub(crate) fn effect_model(
         &self,
         references: EffectReferences,
     ) -> Result<EffectModel<'a>, DiagnoseError> {
         let model = EffectModel::new(self.model, self.drag_table, references)?;
-        Ok(model.between_nodes(self.reference().between_nodes()))
+        let between_nodes = self.baseline.map_or(self.between_nodes, Baseline::between_nodes);
+        Ok(model.between_nodes(between_nodes))
     }
 }

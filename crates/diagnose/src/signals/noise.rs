@@ -110,7 +110,7 @@ pub(crate) struct NoiseModel<'a> {
 
 /// Steps of slopes: of the mass a share of it.
 const TEMPERATURE_STEP_K: f64 = 1e-3;
-const ALTITUDE_STEP_M: f64 = 1e-3;
+pub(crate) const ALTITUDE_STEP_M: f64 = 1e-3;
 const ACCELERATION_STEP_M_S2: f64 = 1e-5;
 const MASS_STEP: f64 = 1e-7;
 

@@ -51,7 +51,7 @@ pub struct LevelPrediction {
     pub net_thrust: Force,
     /// Lift coefficient.
     pub lift_coefficient: f64,
-    /// Drag coefficient of the table.
+    /// Drag coefficient of the table, times its factor by level.
     pub drag_coefficient: f64,
     /// Change of predicted total fuel flow with drag coefficient, kg/s.
     pub fuel_flow_per_drag_coefficient_kg_s: f64,
@@ -90,8 +90,9 @@ impl PerformanceModel {
             let drag_coefficient = self.drag_table().interpolate_all(&block.cells);
             let mut of_block = [f64::NAN; LevelBlock::POINTS];
             for place in 0..LevelBlock::POINTS {
-                let total_kg_s =
-                    drag_coefficient[place] * block.fuel_flow_per_drag_coefficient_kg_s[place];
+                let total_kg_s = drag_coefficient[place]
+                    * block.fuel_flow_per_drag_coefficient_kg_s[place]
+                    * self.factor_at(block, place);
                 of_block[place] = if block.is_known[place] { total_kg_s } else { f64::NAN };
             }
             flows.extend_from_slice(&of_block[..block.count]);
@@ -146,6 +147,12 @@ impl PerformanceModel {
         }
     }
 
+    #[inline]
+    fn factor_at(&self, block: &LevelBlock, place: usize) -> f64 {
+        let level = PressureAltitude::meters(block.pressure_altitude_m[place]);
+        self.factor(block.lift_coefficient[place], block.mach[place], level)
+    }
+
     /// Drag coefficient from the table, and with it the prediction; none outside a domain or the table.
     #[inline]
     fn ask_table(&self, block: &LevelBlock, place: usize) -> Option<LevelPrediction> {
@@ -157,7 +164,7 @@ impl PerformanceModel {
         let table = self.drag_table();
         let lift_coefficient = block.lift_coefficient[place];
         let cell = table.grid().locate(lift_coefficient, mach, Outside::Error).ok()?;
-        let drag_coefficient = table.interpolate(&cell);
+        let drag_coefficient = table.interpolate(&cell) * self.factor_at(block, place);
         let per_drag_coefficient_kg_s = block.fuel_flow_per_drag_coefficient_kg_s[place];
         Some(LevelPrediction {
             fuel_flow_total: FuelFlowTotal::kilograms_per_second(

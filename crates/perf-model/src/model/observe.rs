@@ -1,7 +1,7 @@
 //! A segment reduced to a point of the drag table.
 
 use flight::{Observation, Segment, Timestamp};
-use units::OutOfDomain;
+use units::{OutOfDomain, PressureAltitude};
 
 use super::{OutsideTable, PerformanceModel};
 use crate::variance::{self, TableSlopes};
@@ -37,7 +37,8 @@ pub enum ObserveError {
 }
 
 impl PerformanceModel {
-    /// The observation of a segment: lift coefficient, Mach number, observed drag coefficient and its variance.
+    /// The observation of a segment: lift coefficient, Mach number, observed drag coefficient (without a factor
+    /// [by level](Self::levels)) and its variance.
     ///
     /// The variance includes the effect that an error of Mach number, mass or pressure moves the point along *this
     /// model's* table; see [`variance`].
@@ -60,7 +61,7 @@ impl PerformanceModel {
             return Err(ObserveError::DragNotPositive { drag_n, net_thrust_n, inertia_n });
         }
         let slopes = TableSlopes::at(self.drag_table(), &cell, state.lift_coefficient);
-        Ok(Observation {
+        let observed = Observation {
             time: instant(segment)?,
             lift_coefficient: state.lift_coefficient,
             mach: means.mach,
@@ -69,6 +70,11 @@ impl PerformanceModel {
             fuel_flow_per_drag_coefficient_kg_s:
                 crate::fuel_flow::fuel_flow_per_drag_coefficient_kg_s(&state.conditions),
             variance: variance::observation_variance(self.aircraft(), segment, &state, slopes)?,
+        };
+        let pressure_altitude = PressureAltitude::meters(means.pressure_altitude_m);
+        Ok(match self.levels() {
+            Some(levels) => levels.of_table(&observed, pressure_altitude),
+            None => observed,
         })
     }
 }

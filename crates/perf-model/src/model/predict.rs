@@ -4,8 +4,8 @@ use atmos::{airspeed, isa};
 use flight::Segment;
 use lut::{Cell, Outside, Table};
 use units::{
-    Acceleration, Force, FuelFlowTotal, OutOfDomain, Pressure, SpecificRange, TrueAirspeed, Tsfc,
-    check_within,
+    Acceleration, Force, FuelFlowTotal, OutOfDomain, Pressure, PressureAltitude, SpecificRange,
+    TrueAirspeed, Tsfc, check_within,
 };
 
 use super::{OutsideTable, PerformanceModel, same_grid};
@@ -35,7 +35,7 @@ pub enum PredictError {
 pub struct SegmentPrediction {
     /// The segment's state.
     pub state: SegmentState,
-    /// Drag coefficient of the table.
+    /// Drag coefficient of the table, times its factor by level.
     pub drag_coefficient: f64,
     /// Predicted fuel flow of all engines.
     pub fuel_flow_total: FuelFlowTotal,
@@ -60,7 +60,7 @@ pub struct Prediction {
     pub static_pressure: Pressure,
     /// Lift coefficient.
     pub lift_coefficient: f64,
-    /// Drag coefficient of the table.
+    /// Drag coefficient of the table, times its factor by level.
     pub drag_coefficient: f64,
     /// Net thrust of all engines, equal to drag.
     pub net_thrust: Force,
@@ -102,7 +102,9 @@ impl PerformanceModel {
             .grid()
             .locate(state.lift_coefficient, segment.means.mach, Outside::Error)
             .map_err(OutsideTable::from)?;
-        let drag_coefficient = drag_table.interpolate(&cell);
+        let level = PressureAltitude::meters(segment.means.pressure_altitude_m);
+        let drag_coefficient = drag_table.interpolate(&cell)
+            * self.factor(state.lift_coefficient, segment.means.mach, level);
         let fuel_flow_total = fuel_flow::predicted_fuel_flow(&state.conditions, drag_coefficient);
         Ok(SegmentPrediction {
             state,
@@ -144,7 +146,8 @@ impl PerformanceModel {
         let lift_coefficient =
             forces::lift_coefficient(point.mass, conditions.dynamic_pressure, conditions.wing_area);
         let cell = self.locate(lift_coefficient, point.mach.value())?;
-        let drag_coefficient = self.drag_table().interpolate(&cell);
+        let drag_coefficient = self.drag_table().interpolate(&cell)
+            * self.factor(lift_coefficient, point.mach.value(), point.pressure_altitude);
         let fuel_flow_total = fuel_flow::predicted_fuel_flow(&conditions, drag_coefficient);
         Ok(Prediction {
             fuel_flow_total,

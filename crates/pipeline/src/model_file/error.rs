@@ -5,9 +5,9 @@ use adapt::paper::StateError;
 use diagnose::BaselineError;
 use effects::EffectModelError;
 use lut::TableError;
-use perf_model::{AircraftError, ModelError};
+use perf_model::{AircraftError, GuideLevelError, ModelError};
 
-use super::{FORMAT, GuideLevelError};
+use super::FORMAT;
 use crate::addition_record::UnknownEffect;
 use crate::whole_model::BeliefError;
 

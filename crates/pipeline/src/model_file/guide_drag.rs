@@ -7,9 +7,10 @@ use flight::{Observation, ObservationVariance, Timestamp};
 use lut::{Outside, SmoothCell, Table};
 use perf_model::initial::{GuideObservation, observe_guide_point};
 use perf_model::model::NODE_WEIGHT_THRESHOLD;
-use perf_model::{Guide, GuidePoint, InitialModel, PerformanceModel};
+use perf_model::{Guide, GuideLevels, GuidePlace, GuidePoint, InitialModel, PerformanceModel};
 
-use super::{GuideBook, GuideLevels, GuidePlace, GuideRecord};
+use super::GuideRecord;
+use super::guide_levels::{ONE_LEVEL_M, levels_of_rows};
 
 /// The model with the drag of its guide's rows in the table, in place of the polynomial's; `None` where the rows do not make a table.
 ///
@@ -22,57 +23,137 @@ use super::{GuideBook, GuideLevels, GuidePlace, GuideRecord};
 ///
 /// Six coefficients cannot hold a drag rise: beside the polynomial, a guide's own rows may be several per cent off, and most where
 /// flights go beyond the Mach numbers that have been flown. At nodes that no row tells the nearest x within the guide's range holds.
+///
+/// Where the rows tell so, drag has a factor by level in addition `[bayes.16]`.
 pub(super) fn with_drag_of_guide(
     initial: &InitialModel,
     guide: &Guide,
     range: &GuideRecord,
-) -> Option<(PerformanceModel, Option<GuideBook>)> {
+) -> Option<PerformanceModel> {
     let model = &initial.model;
     let observe = |point: &GuidePoint| observe_guide_point(model.aircraft(), point).ok();
     let rows = guide.points().iter().map(|point| Some((point, observe(point)?)));
-    let rows = rows.collect::<Option<Vec<(&GuidePoint, GuideObservation)>>>()?;
-    let of_rows =
-        |levels: &GuideLevels, settings| table_of(model, &rows, levels, (range, settings));
-    let (table, _) = of_rows(&GuideLevels::default(), None)?;
-    let book = book_of(&table, &rows, of_rows);
-    Some((model.with_drag_table(table).ok()?, book))
-}
-
-/// Table and levels, each fitted to what the other leaves in turn; `None` where levels say nothing beside a table.
-fn book_of(
-    table: &Table,
-    rows: &[(&GuidePoint, GuideObservation)],
-    of_rows: impl Fn(&GuideLevels, Option<BayesSettings>) -> Option<(Table, BayesSettings)>,
-) -> Option<GuideBook> {
-    let mut drag_table = table.clone();
-    let mut levels = GuideLevels::default();
-    let mut settings = None;
-    for round in 0..ROUNDS {
-        levels = GuideLevels::of_rows(&left_by(&drag_table, rows));
-        if levels.levels().is_empty() {
-            return None;
-        }
-        // How far rows scatter and drag bends shows once levels are known, and better where they are known better.
-        let known = settings.filter(|_| round % TUNED_EVERY != 0);
-        let (next, found) = of_rows(&levels, known)?;
-        (drag_table, settings) = (next, Some(found));
+    let rows = rows.collect::<Option<Vec<Row<'_>>>>()?;
+    let rows = Rows { model, printed: &rows, range };
+    let printed = SettingValues {
+        student_degrees_of_freedom: NO_OUTLIERS,
+        ..*BayesSettings::physical_2026().values()
+    };
+    let settings = rows.settings(None, BayesSettings::new(printed).ok()?, &SEARCH)?;
+    let table = rows.table(None, settings)?;
+    if let Some((by_level, levels)) = rows.by_level(&table, settings) {
+        return Some(model.with_drag_table(by_level).ok()?.with_levels(levels));
     }
-    Some(GuideBook { drag_table, levels })
+    model.with_drag_table(table).ok()
 }
 
-/// How often table and levels are fitted to what the other leaves, and after how many of these rounds settings are asked again. Our
-/// choice.
-const ROUNDS: usize = 8;
-const TUNED_EVERY: usize = 3;
+/// A row of a guide, and the drag that corresponds to it.
+type Row<'a> = (&'a GuidePoint, GuideObservation);
 
-/// The place of every row, and its drag over that of a table, less 1.
-fn left_by(table: &Table, rows: &[(&GuidePoint, GuideObservation)]) -> Vec<(GuidePlace, f64)> {
-    let left = rows.iter().filter_map(|(point, row)| {
-        let cell = SmoothCell::locate(table.grid(), row.lift_coefficient, row.mach).ok()?;
-        let share = row.drag_coefficient / cell.value_of(table) - 1.0;
-        Some((place_of(point, row), share))
-    });
-    left.collect()
+/// The rows of a guide.
+struct Rows<'a> {
+    model: &'a PerformanceModel,
+    printed: &'a [Row<'a>],
+    range: &'a GuideRecord,
+}
+
+impl Rows<'_> {
+    /// Table and levels, each fitted to what the other leaves in turn; `None` where levels do not tell most of what `table` leaves:
+    /// rows of flights scatter by more than levels do.
+    fn by_level(&self, table: &Table, mut settings: BayesSettings) -> Option<(Table, GuideLevels)> {
+        let none = GuideLevels::default();
+        let mut drag_table = table.clone();
+        let mut levels = none.clone();
+        let mut variances = None;
+        for round in 0..ROUNDS {
+            let found = levels_of_rows(&self.left_by(&drag_table), variances.as_ref())?;
+            (levels, variances) = (found.0, Some(found.1));
+            // How far rows scatter shows once levels are known, and better where they are known better. How much drag bends is not
+            // asked again: a table that may bend more holds what planes miss of single levels, between whose rows it is off.
+            if round % TUNED_EVERY == 0 {
+                settings = self.settings(Some(&levels), settings, &SEARCH_OF_SCATTER)?;
+            }
+            drag_table = self.table(Some(&levels), settings)?;
+        }
+        let tells = self.square_left(&drag_table, &levels)
+            <= MOST_OF_SQUARE_LEFT * self.square_left(table, &none);
+        tells.then_some((drag_table, levels))
+    }
+
+    /// The place of every row, and its drag over that of a table, less 1.
+    fn left_by(&self, table: &Table) -> Vec<(GuidePlace, f64)> {
+        let left = self.printed.iter().filter_map(|(point, row)| {
+            let cell = SmoothCell::locate(table.grid(), row.lift_coefficient, row.mach).ok()?;
+            let share = row.drag_coefficient / cell.value_of(table) - 1.0;
+            Some((place_of(point, row), share))
+        });
+        left.collect()
+    }
+
+    /// Sum of squares of what table and levels leave.
+    fn square_left(&self, table: &Table, levels: &GuideLevels) -> f64 {
+        let left = self.left_by(table).into_iter();
+        left.map(|(place, share)| ((1.0 + share) / levels.factor(place) - 1.0).powi(2)).sum()
+    }
+
+    /// What the rows tell of settings.
+    fn settings(
+        &self,
+        levels: Option<&GuideLevels>,
+        from: BayesSettings,
+        search: &Search,
+    ) -> Option<BayesSettings> {
+        let initial = self.model.drag_table();
+        Some(tune(initial, from, &self.observations(levels), search).ok()?.settings)
+    }
+
+    /// The table of rows whose levels are known.
+    fn table(&self, levels: Option<&GuideLevels>, settings: BayesSettings) -> Option<Table> {
+        let initial = self.model.drag_table();
+        let flights = self.observations(levels);
+        let mut state = BayesState::new(initial, settings).ok()?;
+        for rows in &flights {
+            let _ = state.learn_flight(rows);
+        }
+        let told = told_nodes(initial, &flights);
+        table_within(&state.solve().ok()?, initial, (self.range, &told))
+    }
+
+    /// What rows say of the table. With levels, rows of one level that follow each other are off together, by what law `bayes` has for
+    /// what is common to a flight.
+    fn observations(&self, levels: Option<&GuideLevels>) -> Vec<Vec<Observation>> {
+        let initial = self.model.drag_table();
+        let together = |a: &Row<'_>, b: &Row<'_>| levels.is_some() && are_of_one_level(a, b);
+        let flights = self.printed.chunk_by(together);
+        flights
+            .map(|rows| rows.iter().map(|row| observation(initial, levels, row)).collect())
+            .collect()
+    }
+}
+
+/// What a row says of the table that is learnt.
+fn observation(
+    initial: &Table,
+    levels: Option<&GuideLevels>,
+    (point, row): &Row<'_>,
+) -> Observation {
+    let total_kg_s = point.fuel_flow_total.to_kilograms_per_second();
+    let chord = chord_over_smooth(initial, row.lift_coefficient, row.mach).unwrap_or(1.0);
+    let at_level = levels.map_or(1.0, |levels| levels.factor(place_of(point, row)));
+    let drag_coefficient = row.drag_coefficient * chord / at_level;
+    Observation {
+        time: Timestamp::UNIX_EPOCH,
+        lift_coefficient: row.lift_coefficient,
+        mach: row.mach,
+        drag_coefficient,
+        fuel_flow_total_kg_s: total_kg_s,
+        fuel_flow_per_drag_coefficient_kg_s: total_kg_s / drag_coefficient,
+        variance: ObservationVariance { segment: 0.0, flight: 0.0 },
+    }
+}
+
+fn are_of_one_level((a, _): &Row<'_>, (b, _): &Row<'_>) -> bool {
+    (a.pressure_altitude.to_meters() - b.pressure_altitude.to_meters()).abs() < ONE_LEVEL_M
 }
 
 fn place_of(point: &GuidePoint, row: &GuideObservation) -> GuidePlace {
@@ -83,48 +164,14 @@ fn place_of(point: &GuidePoint, row: &GuideObservation) -> GuidePlace {
     }
 }
 
-/// The table of rows whose levels are known, and the settings that rows tell where none are.
-fn table_of(
-    model: &PerformanceModel,
-    rows: &[(&GuidePoint, GuideObservation)],
-    levels: &GuideLevels,
-    (range, known): (&GuideRecord, Option<BayesSettings>),
-) -> Option<(Table, BayesSettings)> {
-    let initial = model.drag_table();
-    let flights: Vec<Vec<Observation>> = rows
-        .iter()
-        .map(|(point, row)| {
-            let total_kg_s = point.fuel_flow_total.to_kilograms_per_second();
-            let chord = chord_over_smooth(initial, row.lift_coefficient, row.mach).unwrap_or(1.0);
-            let at_level = levels.factor(place_of(point, row));
-            let drag_coefficient = row.drag_coefficient * chord / at_level;
-            vec![Observation {
-                time: Timestamp::UNIX_EPOCH,
-                lift_coefficient: row.lift_coefficient,
-                mach: row.mach,
-                drag_coefficient,
-                fuel_flow_total_kg_s: total_kg_s,
-                fuel_flow_per_drag_coefficient_kg_s: total_kg_s / drag_coefficient,
-                variance: ObservationVariance { segment: 0.0, flight: 0.0 },
-            }]
-        })
-        .collect();
-    let settings = if let Some(known) = known {
-        known
-    } else {
-        let printed = SettingValues {
-            student_degrees_of_freedom: NO_OUTLIERS,
-            ..*BayesSettings::physical_2026().values()
-        };
-        tune(initial, BayesSettings::new(printed).ok()?, &flights, &SEARCH).ok()?.settings
-    };
-    let mut state = BayesState::new(initial, settings).ok()?;
-    for row in &flights {
-        let _ = state.learn_flight(row);
-    }
-    let told = told_nodes(initial, &flights);
-    Some((table_within(&state.solve().ok()?, initial, (range, &told))?, settings))
-}
+/// How often table and levels are fitted to what the other leaves, and after how many of these rounds settings are asked again. Our
+/// choice.
+const ROUNDS: usize = 8;
+const TUNED_EVERY: usize = 3;
+
+/// Of the squares that a table leaves of rows, the most that levels may leave. Our choice: printed guides leave 0.004 to 0.05, guides made
+/// of flights 0.3 and more.
+const MOST_OF_SQUARE_LEFT: f64 = 0.25;
 
 /// How the rows of a guide tell their own noise, and how much drag bends beside the polynomial: a drag rise sets in more sharply than
 /// an aircraft departs from its guide.
@@ -135,6 +182,8 @@ const SEARCH: Search = Search {
     prior_factor: 4.0,
     with_correction: true,
 };
+/// How they tell their noise alone.
+const SEARCH_OF_SCATTER: Search = Search { with_correction: false, ..SEARCH };
 /// Degrees of freedom of rows that are printed and not measured: none is weighed down.
 const NO_OUTLIERS: f64 = 1e6;
 

@@ -1,180 +1,214 @@
 //! What a guide's rows say of drag by level, beside a table over lift coefficient and Mach number.
 
-use lut::{SmoothCell, Table};
-use nalgebra::{Matrix3, Vector3};
-use units::PressureAltitude;
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use perf_model::{GuideLevel, GuideLevels, GuidePlace, guide_terms};
 
-/// A guide as a book to be read: drag over lift coefficient and Mach number, times a factor by level.
+/// What rows leave of a table by level: places, and drag over that of the table, less 1. Empty where there are too few rows.
 ///
-/// Reynolds number, part load and the temperature in TSFC vary with the level where lift coefficient and Mach number do not: rows
-/// of guides that know them are 1 to 3 % off any table.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GuideBook {
-    /// Drag coefficient where the factor is 1.
-    pub drag_table: Table,
-    /// By how much it is more at each level.
-    pub levels: GuideLevels,
-}
-
-/// By how much the drag of a guide's rows exceeds that of a table at each of its levels: a plane over lift coefficient and Mach
-/// number at each. Empty where rows of one level differ as much from each other as levels do.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct GuideLevels {
-    /// Smallest and largest lift coefficient and Mach number of the rows.
-    ranges: [(f64, f64); 2],
-    levels: Vec<GuideLevel>,
-}
-
-/// One level of a guide.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GuideLevel {
-    /// Pressure altitude, m.
-    pub pressure_altitude_m: f64,
-    /// Drag by the rows over that by the table, less 1: in the middle of lift coefficients and Mach numbers, and how much more it
-    /// is at the largest of either.
-    pub shares: [f64; 3],
-}
-
-/// A place in a guide.
-#[derive(Clone, Copy, Debug)]
-pub struct GuidePlace {
-    /// Lift coefficient.
-    pub lift_coefficient: f64,
-    /// Mach number.
-    pub mach: f64,
-    /// Pressure altitude.
-    pub pressure_altitude: PressureAltitude,
-}
-
-/// Numbers that are no levels of a guide.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum GuideLevelError {
-    /// A level.
-    #[error("level {0} m: expected pressure altitudes that rise, and shares between -0.5 and 0.5")]
-    Level(f64),
-    /// A range.
-    #[error("from {0} to {1}: expected a range of lift coefficients or Mach numbers")]
-    Range(f64, f64),
-}
-
-impl GuideBook {
-    /// Drag coefficient at a place, of which `cell` is that of the table.
-    #[must_use]
-    pub fn drag_coefficient(&self, cell: &SmoothCell, place: GuidePlace) -> f64 {
-        self.levels.factor(place) * cell.value_of(&self.drag_table)
-    }
-}
-
-impl GuideLevels {
-    /// Levels that were written.
-    ///
-    /// # Errors
-    /// Pressure altitudes that do not rise, shares that no level has, or ranges that are none.
-    pub fn new(ranges: [(f64, f64); 2], levels: Vec<GuideLevel>) -> Result<Self, GuideLevelError> {
-        for (low, high) in ranges {
-            if !(low.is_finite() && high.is_finite() && low < high) {
-                return Err(GuideLevelError::Range(low, high));
-            }
-        }
-        let mut below = f64::NEG_INFINITY;
-        for GuideLevel { pressure_altitude_m, shares } in &levels {
-            let rises = pressure_altitude_m.is_finite() && *pressure_altitude_m > below;
-            if !(rises && shares.iter().all(|share| share.abs() < 0.5)) {
-                return Err(GuideLevelError::Level(*pressure_altitude_m));
-            }
-            below = *pressure_altitude_m;
-        }
-        Ok(Self { ranges, levels })
-    }
-
-    /// What rows leave of a table: places, and drag over that of the table, less 1.
-    ///
-    /// ```text
-    /// b_k = V_k X_kᵀ r_k/s²,   V_k = (X_kᵀX_k/s² + diag(1/τ_j²))⁻¹                                      [bayes.16]
-    /// τ_j² = mean_k (b_kj² + V_kjj),   s² = Σ_k (|r_k − X_k b_k|² + tr X_k V_k X_kᵀ)/N
-    /// ```
-    ///
-    /// `r_k` are the shares at level k, the rows of `X_k` 1 and both places from -1 to 1. Variances are those of the largest
-    /// evidence, by [`ROUNDS`] rounds of expectation and maximisation; what levels do not differ in shrinks to nothing.
-    pub(super) fn of_rows(rows: &[(GuidePlace, f64)]) -> Self {
-        let range = |of: fn(&GuidePlace) -> f64| {
-            let values = rows.iter().map(|(place, _)| of(place));
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                (low.min(value), high.max(value))
-            })
-        };
-        let ranges = [range(|place| place.lift_coefficient), range(|place| place.mach)];
-        let groups = by_level(rows, ranges);
-        // A plane at each level is told by more rows than it has numbers.
-        if groups.len() < 2 || rows.len() < 4 * groups.len() {
-            return Self::default();
-        }
-        let count = rows.len() as f64;
-        let mut within = rows.iter().map(|(_, share)| share * share).sum::<f64>() / count;
-        let mut between = Vector3::repeat(within);
-        let mut planes = Vec::new();
-        for _ in 0..ROUNDS {
-            let found = groups.iter().map(|of| of.plane(between, within));
-            let Some(found) = found.collect::<Option<Vec<_>>>() else { return Self::default() };
-            planes = found;
-            let of_levels = planes.len() as f64;
-            between = planes
-                .iter()
-                .map(|(plane, covariance)| plane.component_mul(plane) + covariance.diagonal())
-                .sum::<Vector3<f64>>()
-                / of_levels;
-            within =
-                groups.iter().zip(&planes).map(|(of, plane)| of.left(plane)).sum::<f64>() / count;
-        }
-        let levels = groups.iter().zip(&planes).map(|(of, (plane, _))| GuideLevel {
-            pressure_altitude_m: of.pressure_altitude_m,
-            shares: [plane[0], plane[1], plane[2]],
-        });
-        Self::new(ranges, levels.collect()).unwrap_or_default()
-    }
-
-    /// The levels, the lowest first.
-    #[must_use]
-    pub fn levels(&self) -> &[GuideLevel] {
-        &self.levels
-    }
-
-    /// Smallest and largest lift coefficient and Mach number of the rows.
-    #[must_use]
-    pub const fn ranges(&self) -> [(f64, f64); 2] {
-        self.ranges
-    }
-
-    /// Factor on the drag of the table: linear between levels, held below and above them and beyond the rows.
-    #[must_use]
-    pub fn factor(&self, place: GuidePlace) -> f64 {
-        let at_m = place.pressure_altitude.to_meters();
-        let above = self.levels.partition_point(|level| level.pressure_altitude_m <= at_m);
-        let terms = terms(place, self.ranges);
-        let share = |level: &GuideLevel| Vector3::from(level.shares).dot(&terms);
-        let below = above.checked_sub(1).map(|k| &self.levels[k]);
-        1.0 + match (below, self.levels.get(above)) {
-            (Some(low), Some(high)) => {
-                let span_m = high.pressure_altitude_m - low.pressure_altitude_m;
-                let upper = (at_m - low.pressure_altitude_m) / span_m;
-                share(low) + upper * (share(high) - share(low))
-            }
-            (Some(end), None) | (None, Some(end)) => share(end),
-            (None, None) => 0.0,
-        }
-    }
-}
-
-/// Rounds of expectation and maximisation. Our choice.
-const ROUNDS: usize = 60;
-
-/// 1, and lift coefficient and Mach number from -1 to 1 over their ranges, held at their ends.
-fn terms(place: GuidePlace, [lift, mach]: [(f64, f64); 2]) -> Vector3<f64> {
-    let over = |value: f64, (low, high): (f64, f64)| {
-        (2.0 * (value - low) / (high - low) - 1.0).clamp(-1.0, 1.0)
+/// ```text
+/// r_k = X_k (b_k + e_k) + ε,   b_kj = u_j0 + u_j1 h_k + Σ_i w_ji·max(0, h_k − h_i)                        [bayes.16]
+/// u ~ N(0, σ_j²),   w_ji ~ N(0, ω_j²·(h_i+1 − h_i−1)/2),   e_kj ~ N(0, τ_j²),   ε ~ N(0, s²)
+/// ```
+///
+/// `r_k` are the shares at level k, the rows of `X_k` 1 and both places from -1 to 1, `h` the levels from -1 to 1. `b` is what drag
+/// does over levels; what a level has of its own, `e`, is not: drag is smooth over levels, and rows that were flown at a level are
+/// off together. Variances are those of the largest evidence, by [`ROUNDS`] rounds of expectation and maximisation, or
+/// [`ROUNDS_NEARBY`] from those of nearly the same rows; what levels do not differ in shrinks to nothing.
+pub(super) fn levels_of_rows(
+    rows: &[(GuidePlace, f64)],
+    nearby: Option<&Variances>,
+) -> Option<(GuideLevels, Variances)> {
+    let range = |of: fn(&GuidePlace) -> f64| {
+        let values = rows.iter().map(|(place, _)| of(place));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        })
     };
-    Vector3::new(1.0, over(place.lift_coefficient, lift), over(place.mach, mach))
+    let ranges = [range(|place| place.lift_coefficient), range(|place| place.mach)];
+    let groups = by_level(rows, ranges);
+    // A plane at each level is told by more rows than it has numbers.
+    if !(2..=MOST_LEVELS).contains(&groups.len()) || rows.len() < 4 * groups.len() {
+        return None;
+    }
+    let smooth = Smooth::new(&groups);
+    let (variances, _) = smooth.likeliest(nearby, rows.len())?;
+    let planes = smooth.planes(&variances)?;
+    let levels = groups
+        .iter()
+        .zip(planes)
+        .map(|(of, shares)| GuideLevel { pressure_altitude_m: of.pressure_altitude_m, shares });
+    Some((GuideLevels::new(ranges, levels.collect()).ok()?, variances))
+}
+
+/// Pressure altitudes that differ by less are one level, m: levels are printed to 100 ft, and converted.
+pub(super) const ONE_LEVEL_M: f64 = 10.0;
+
+/// Guides print levels; where there are more than every thousand feet, rows are of flights that change their level.
+const MOST_LEVELS: usize = 64;
+
+/// Rounds of expectation and maximisation, from what is usual and from what was found of nearly the same rows. Our choice.
+const ROUNDS: usize = 60;
+const ROUNDS_NEARBY: usize = 8;
+
+/// Planes that are smooth over levels.
+struct Smooth<'a> {
+    groups: &'a [Group],
+    /// What every weight is at each level: levels down, weights across.
+    basis: DMatrix<f64>,
+    /// Of how much of ω² the variance of each weight is; of the first two weights of σ².
+    widths: Vec<f64>,
+}
+
+/// Variances of the terms of [`levels_of_rows`], for each of the three of a plane where they are more.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Variances {
+    /// s².
+    within: f64,
+    /// τ².
+    own: Vector3<f64>,
+    /// σ².
+    line: Vector3<f64>,
+    /// ω².
+    bend: Vector3<f64>,
+}
+
+/// Weights, three for each column of the basis, and how well they are known.
+struct Weights {
+    mean: DVector<f64>,
+    covariance: DMatrix<f64>,
+    /// Covariance of what each level has of its own where its plane is known.
+    own: Vec<Matrix3<f64>>,
+}
+
+impl<'a> Smooth<'a> {
+    /// Of two levels and more.
+    fn new(groups: &'a [Group]) -> Self {
+        let levels = groups.len();
+        let (low, high) = (groups[0].pressure_altitude_m, groups[levels - 1].pressure_altitude_m);
+        let at = |k: usize| 2.0 * (groups[k].pressure_altitude_m - low) / (high - low) - 1.0;
+        let basis = DMatrix::from_fn(levels, levels, |k, column| match column {
+            0 => 1.0,
+            1 => at(k),
+            _ => (at(k) - at(column - 1)).max(0.0),
+        });
+        let width = |column: usize| match column {
+            0 | 1 => 1.0,
+            _ => 0.5 * (at(column) - at(column - 2)),
+        };
+        Self { groups, basis, widths: (0..levels).map(width).collect() }
+    }
+
+    /// The plane at each level; `None` where variances are none.
+    fn planes(&self, variances: &Variances) -> Option<Vec<[f64; 3]>> {
+        let mean = self.weights(variances)?.mean;
+        let plane = |k: usize| core::array::from_fn(|term| self.share(&mean, k, term));
+        Some((0..self.groups.len()).map(plane).collect())
+    }
+
+    /// The variances of the largest evidence, and those of the round before.
+    fn likeliest(&self, nearby: Option<&Variances>, rows: usize) -> Option<(Variances, Variances)> {
+        let square: f64 = self.groups.iter().map(|of| of.square).sum();
+        let all = Vector3::repeat(square / rows as f64);
+        let usual = Variances { within: all[0], own: all, line: all, bend: all };
+        let mut found = nearby.copied().unwrap_or(usual);
+        let mut before = found;
+        for _ in 0..if nearby.is_some() { ROUNDS_NEARBY } else { ROUNDS } {
+            before = found;
+            found = self.maximised(&found, &self.weights(&found)?, rows);
+        }
+        Some((found, before))
+    }
+
+    fn share(&self, weights: &DVector<f64>, level: usize, term: usize) -> f64 {
+        let row = self.basis.row(level);
+        row.iter().enumerate().map(|(column, value)| value * weights[3 * column + term]).sum()
+    }
+
+    /// The weights by these variances: what a level has of its own is integrated out.
+    fn weights(&self, variances: &Variances) -> Option<Weights> {
+        let size = 3 * self.groups.len();
+        let mut precision = DMatrix::<f64>::zeros(size, size);
+        let mut product = DVector::<f64>::zeros(size);
+        let mut own = Vec::with_capacity(self.groups.len());
+        let within = variances.within;
+        for (level, of) in self.groups.iter().enumerate() {
+            let of_own = of.own(variances)?;
+            let left = Matrix3::identity() - of.gram * of_own / within;
+            let (told, of_rows) = (left * of.gram / within, left * of.product / within);
+            own.push(of_own);
+            let values = self.basis.row(level);
+            for (a, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                let mut rows = product.fixed_rows_mut::<3>(3 * a);
+                rows += of_rows * *value;
+                for (b, other) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                    let mut block = precision.fixed_view_mut::<3, 3>(3 * a, 3 * b);
+                    block += told * (value * other);
+                }
+            }
+        }
+        // Of S P S + 1, with S the standard deviations before the rows: a variance may be 0.
+        let scale = DVector::from_fn(size, |weight, _| self.prior(variances, weight).sqrt());
+        let inner = DMatrix::from_fn(size, size, |a, b| {
+            let both = 0.5 * (precision[(a, b)] + precision[(b, a)]);
+            scale[a] * both * scale[b] + if a == b { 1.0 } else { 0.0 }
+        });
+        let factor = inner.cholesky()?;
+        let mean = factor.solve(&product.component_mul(&scale)).component_mul(&scale);
+        let mut covariance = factor.inverse();
+        for (a, b) in (0..size).flat_map(|a| (0..size).map(move |b| (a, b))) {
+            covariance[(a, b)] *= scale[a] * scale[b];
+        }
+        Some(Weights { mean, covariance, own })
+    }
+
+    /// Variance of a weight before the rows.
+    fn prior(&self, variances: &Variances, weight: usize) -> f64 {
+        let (column, term) = (weight / 3, weight % 3);
+        let of = if column < 2 { variances.line } else { variances.bend };
+        of[term] * self.widths[column]
+    }
+
+    /// The variances under which what was found is likeliest.
+    fn maximised(&self, before: &Variances, found: &Weights, rows: usize) -> Variances {
+        let levels = self.groups.len();
+        let none = Vector3::zeros();
+        let mut next = Variances { within: 0.0, own: none, line: none, bend: none };
+        for (level, (of, own)) in self.groups.iter().zip(&found.own).enumerate() {
+            let smooth = Vector3::from_fn(|term, _| self.share(&found.mean, level, term));
+            let of_smooth = self.covariance_at(found, level);
+            let lean = own * of.gram / before.within;
+            let beside = own * (of.product - of.gram * smooth) / before.within;
+            let of_beside = own + lean * of_smooth * lean.transpose();
+            next.own += beside.component_mul(&beside) + of_beside.diagonal();
+            let left = Matrix3::identity() - lean;
+            let both = left * of_smooth * left.transpose() + own;
+            next.within += of.left(&(smooth + beside), &both);
+        }
+        next.own /= levels as f64;
+        next.within /= rows as f64;
+        for weight in 0..3 * levels {
+            let (column, term) = (weight / 3, weight % 3);
+            let square = found.mean[weight].powi(2) + found.covariance[(weight, weight)];
+            let of = if column < 2 { &mut next.line } else { &mut next.bend };
+            let count = if column < 2 { 2 } else { levels - 2 };
+            of[term] += square / (self.widths[column] * count as f64);
+        }
+        next
+    }
+
+    /// Covariance of the plane at a level.
+    fn covariance_at(&self, found: &Weights, level: usize) -> Matrix3<f64> {
+        let values = self.basis.row(level);
+        let mut covariance = Matrix3::zeros();
+        let told = || values.iter().enumerate().filter(|(_, value)| **value != 0.0);
+        for (a, value) in told() {
+            for (b, other) in told() {
+                let block = found.covariance.fixed_view::<3, 3>(3 * a, 3 * b);
+                covariance += block * (value * other);
+            }
+        }
+        covariance
+    }
 }
 
 /// Rows of one level: sums of products.
@@ -186,24 +220,19 @@ struct Group {
 }
 
 impl Group {
-    /// The plane and its covariance; `None` where variances are none.
-    fn plane(&self, between: Vector3<f64>, within: f64) -> Option<(Vector3<f64>, Matrix3<f64>)> {
-        // Of S G S/s² + 1, with S the standard deviations: levels may differ in nothing.
-        let scale = Matrix3::from_diagonal(&between.map(f64::sqrt));
-        let inner = scale * self.gram * scale / within + Matrix3::identity();
-        let covariance = scale * inner.cholesky()?.inverse() * scale;
-        Some((covariance * self.product / within, covariance))
+    /// Covariance of what the level has of its own, where its smooth plane is known.
+    fn own(&self, variances: &Variances) -> Option<Matrix3<f64>> {
+        let scale = Matrix3::from_diagonal(&variances.own.map(f64::sqrt));
+        let inner = scale * self.gram * scale / variances.within + Matrix3::identity();
+        Some(scale * inner.cholesky()?.inverse() * scale)
     }
 
     /// Sum of squares that a plane leaves, and of what is not known of it.
-    fn left(&self, (plane, covariance): &(Vector3<f64>, Matrix3<f64>)) -> f64 {
+    fn left(&self, plane: &Vector3<f64>, covariance: &Matrix3<f64>) -> f64 {
         let fitted = self.square - 2.0 * plane.dot(&self.product) + plane.dot(&(self.gram * plane));
         fitted.max(0.0) + (self.gram * covariance).trace()
     }
 }
-
-/// Pressure altitudes that differ by less are one level, m: levels are printed to 100 ft, and converted.
-const ONE_LEVEL_M: f64 = 10.0;
 
 fn by_level(rows: &[(GuidePlace, f64)], ranges: [(f64, f64); 2]) -> Vec<Group> {
     let level_m = |row: &(GuidePlace, f64)| row.0.pressure_altitude.to_meters();
@@ -217,7 +246,8 @@ fn by_level(rows: &[(GuidePlace, f64)], ranges: [(f64, f64); 2]) -> Vec<Group> {
             square: 0.0,
         };
         for (place, share) in rows {
-            let terms = terms(*place, ranges);
+            let place = (place.lift_coefficient, place.mach);
+            let terms = Vector3::from(guide_terms(place, ranges));
             group.gram += terms * terms.transpose();
             group.product += *share * terms;
             group.square += share * share;

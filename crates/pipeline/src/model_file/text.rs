@@ -9,16 +9,17 @@ use effects::ExtendedModel;
 use lut::Table;
 use lut::surface::Surface;
 use perf_model::aircraft::AircraftFile;
-use perf_model::{Aircraft, PerformanceModel};
+use perf_model::{Aircraft, GuideLevel, GuideLevels, PerformanceModel};
 use ron::ser::PrettyConfig;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::applied::{AppliedText, layers_of};
 use super::error::{ModelTextError, ModelValueError};
 use super::{
-    AppliedRecord, FORMAT, GuideBook, GuideLevel, GuideLevels, GuideRecord, LawSettings, LawState,
-    Learnt, LedgerEntry, ModelFile, PaperSettings, PaperState,
+    AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
+    PaperSettings, PaperState,
 };
 use crate::checksum::hexadecimal;
 use crate::condition_means::ConditionMeans;
@@ -36,6 +37,8 @@ const FIRST_FORMAT: u32 = 1;
 const FIRST_WITH_FACTORS: u32 = 3;
 /// The format of models with the drag of the guide's rows.
 const FIRST_WITH_GUIDE: u32 = 4;
+/// The format of a baseline with a term for the force along the path.
+const FIRST_WITH_PATH_FORCE: u32 = 5;
 /// The format from which on a baseline is one posterior.
 const FIRST_WITH_POSTERIOR: u32 = 2;
 
@@ -73,15 +76,17 @@ struct InitialText {
     /// By the rows of the guide in place of the polynomial through them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     drag_coefficient_of_guide: Option<Vec<f64>>,
-    /// The guide with a factor by level.
+    /// By how much the drag of these rows differs by level.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    book_of_guide: Option<BookText>,
+    levels_of_guide: Option<LevelsText>,
+    /// Of programs of format 5: the guide with a factor by level, beside a drag of its rows without, to which what was learnt refers.
+    #[serde(default, skip_serializing, rename = "book_of_guide")]
+    _book_of_guide: Option<IgnoredAny>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct BookText {
-    drag_coefficient: Vec<f64>,
+struct LevelsText {
     lift_coefficient: (f64, f64),
     mach: (f64, f64),
     /// Pressure altitude in m, and drag there over that of the table, less 1: in the middle, and how much more at the largest
@@ -229,11 +234,12 @@ fn checksum_of(body: &str) -> String {
 
 fn document_of(model: &ModelFile) -> Document {
     let grid = model.grid();
-    // Formats 2, 3 and 5 differ in the baseline alone.
+    // Formats 2, 3 and 5 differ in the baseline alone, format 6 in what it refers to.
     let baseline = model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     Document {
         format: match (&model.by_guide, baseline) {
-            (_, Some(baseline)) if baseline.has_path_force() => FORMAT,
+            (Some(model), _) if model.base().levels().is_some() => FORMAT,
+            (_, Some(baseline)) if baseline.has_path_force() => FIRST_WITH_PATH_FORCE,
             (Some(_), _) => FIRST_WITH_GUIDE,
             (None, Some(_)) => FIRST_WITH_FACTORS,
             (None, None) => FIRST_FORMAT,
@@ -252,7 +258,12 @@ fn document_of(model: &ModelFile) -> Document {
                 .by_guide
                 .as_deref()
                 .map(|model| model.drag_table().values().to_vec()),
-            book_of_guide: model.guide_book.as_deref().map(book_to_text),
+            levels_of_guide: model
+                .by_guide
+                .as_deref()
+                .and_then(|model| model.base().levels())
+                .map(levels_to_text),
+            _book_of_guide: None,
         },
         settings: model.settings,
         learnt: model.learnt.as_ref().map(learnt_to_text),
@@ -261,15 +272,10 @@ fn document_of(model: &ModelFile) -> Document {
     }
 }
 
-fn book_to_text(book: &GuideBook) -> BookText {
-    let levels = book.levels.levels().iter();
-    let [lift_coefficient, mach] = book.levels.ranges();
-    BookText {
-        lift_coefficient,
-        mach,
-        drag_coefficient: book.drag_table.values().to_vec(),
-        levels: levels.map(|level| (level.pressure_altitude_m, level.shares)).collect(),
-    }
+fn levels_to_text(levels: &GuideLevels) -> LevelsText {
+    let [lift_coefficient, mach] = levels.ranges();
+    let levels = levels.levels().iter().map(|level| (level.pressure_altitude_m, level.shares));
+    LevelsText { lift_coefficient, mach, levels: levels.collect() }
 }
 
 fn learnt_to_text(learnt: &Learnt) -> LearntText {
@@ -319,23 +325,17 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         flags_from_text("initial.extrapolated", &document.initial.extrapolated, nodes)?,
     )
     .map_err(|error| value("initial", error))?;
-    let by_guide = match document.initial.drag_coefficient_of_guide {
+    let InitialText { drag_coefficient_of_guide, levels_of_guide, .. } = document.initial;
+    let by_guide = match drag_coefficient_of_guide {
         None => None,
         Some(values) => {
             const FIELD: &str = "initial.drag_coefficient_of_guide";
             let model = initial.with_drag_table(table(FIELD, values)?);
-            Some(model.map_err(|error| value(FIELD, error))?)
-        }
-    };
-    let guide_book = match document.initial.book_of_guide {
-        None => None,
-        Some(BookText { drag_coefficient, lift_coefficient, mach, levels }) => {
-            const FIELD: &str = "initial.book_of_guide";
-            let level = |(pressure_altitude_m, shares)| GuideLevel { pressure_altitude_m, shares };
-            let levels =
-                GuideLevels::new([lift_coefficient, mach], levels.into_iter().map(level).collect());
-            let levels = levels.map_err(|error| value(FIELD, error))?;
-            Some(Box::new(GuideBook { drag_table: table(FIELD, drag_coefficient)?, levels }))
+            let model = model.map_err(|error| value(FIELD, error))?;
+            Some(match levels_of_guide.map(levels_of).transpose()? {
+                Some(levels) => model.with_levels(levels),
+                None => model,
+            })
         }
     };
     let applied = document.effects.into_iter().map(AppliedRecord::try_from);
@@ -359,7 +359,14 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         }
     };
     let guide = document.guide;
-    Ok(ModelFile { initial, guide, settings, learnt, applied, by_guide, guide_book })
+    Ok(ModelFile { initial, guide, settings, learnt, applied, by_guide })
+}
+
+fn levels_of(text: LevelsText) -> Result<GuideLevels, ModelTextError> {
+    let LevelsText { lift_coefficient, mach, levels } = text;
+    let level = |(pressure_altitude_m, shares)| GuideLevel { pressure_altitude_m, shares };
+    GuideLevels::new([lift_coefficient, mach], levels.into_iter().map(level).collect())
+        .map_err(|error| value("initial.levels_of_guide", error))
 }
 
 /// A baseline of its record, with what was believed of the initial table.

@@ -4,7 +4,7 @@ use diagnose::WholeModel;
 use effects::ExtendedModel;
 use lut::{Outside, SmoothCell, Table};
 use perf_model::model::NODE_WEIGHT_THRESHOLD;
-use perf_model::{FlightPoint, Prediction};
+use perf_model::{FlightPoint, GuideLevels, GuidePlace, Prediction};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -12,7 +12,7 @@ use serde::Serialize;
 use units::{Mach, PressureAltitude};
 
 use super::MassAndDay;
-use crate::model_file::{GuideBook, GuidePlace, ModelFile};
+use crate::model_file::ModelFile;
 use crate::prediction::{PointPrediction, Predictor};
 use crate::whole_model::Predicts;
 
@@ -32,9 +32,7 @@ pub enum Informed {
 #[derive(Debug)]
 pub struct OptimumModel<'a> {
     own: ExtendedModel,
-    book: Table,
-    /// The book with its factor by level, of a model that has learnt more than a table.
-    by_level: Option<&'a GuideBook>,
+    book: &'a ExtendedModel,
     learnt: Learnt<'a>,
     informed_by_flights: Vec<bool>,
     predictor: Predictor<'a>,
@@ -104,8 +102,7 @@ impl<'a> OptimumModel<'a> {
         let book = if has_whole { model.reference() } else { &model.initial };
         Ok(Self {
             own: model.current()?,
-            book: book.drag_table().clone(),
-            by_level: model.guide_book.as_deref().filter(|_| has_whole),
+            book,
             learnt,
             informed_by_flights: model
                 .learnt
@@ -124,7 +121,7 @@ impl<'a> OptimumModel<'a> {
 
     /// Fuel flow at a level, over every thousandth of a Mach number at which the model is informed.
     pub(super) fn curve(&self, condition: MassAndDay, level: PressureAltitude) -> Curve {
-        let axis = self.book.grid().y();
+        let axis = self.book.drag_table().grid().y();
         let mut curve = Curve { drawn_kg_s: vec![Vec::new(); self.draws()], ..Curve::default() };
         for mach_thousandths in thousandths(axis.first(), axis.last()) {
             let mach = f64::from(mach_thousandths) / 1000.0;
@@ -149,23 +146,22 @@ impl<'a> OptimumModel<'a> {
     /// model that is no more than a table:
     ///
     /// ```text
-    /// Wf = Ŵf + (CD_smooth − CD_bilinear)·∂Ŵf/∂CD                                              [optimum.1]
+    /// Wf = Ŵf + (CD_smooth − CD_bilinear)·∂Ŵf/∂CD,   both without the effects that the model contains    [optimum.1]
     /// ```
     fn add(&self, curve: &mut Curve, mach_thousandths: u32, point: &FlightPoint) -> Option<()> {
         let plain = self.own.base().predict(point).ok()?;
         let mach = point.mach.value();
         let informed = self.informed(plain.lift_coefficient, mach)?;
-        let cell = SmoothCell::locate(self.book.grid(), plain.lift_coefficient, mach).ok()?;
-        let by_level = self.by_level.map(|book| {
-            let place = GuidePlace {
-                lift_coefficient: plain.lift_coefficient,
-                mach,
-                pressure_altitude: point.pressure_altitude,
-            };
-            by_drag(book.drag_coefficient(&cell, place), &plain)
-        });
-        let book_kg_s = by_level.unwrap_or_else(|| by_table(&self.book, &cell, &plain));
-        let (own_kg_s, drawn_kg_s) = self.own_kg_s(point, &cell, plain)?;
+        let grid = self.book.drag_table().grid();
+        let cell = SmoothCell::locate(grid, plain.lift_coefficient, mach).ok()?;
+        let place = GuidePlace {
+            lift_coefficient: plain.lift_coefficient,
+            mach,
+            pressure_altitude: point.pressure_altitude,
+        };
+        let book = smooth_drag(self.book.drag_table(), self.book.base().levels(), (&cell, place));
+        let book_kg_s = with_drag(&plain, &plain, book);
+        let (own_kg_s, drawn_kg_s) = self.own_kg_s(point, (&cell, place), &plain)?;
         if !(own_kg_s > 0.0 && book_kg_s > 0.0) {
             return None;
         }
@@ -190,17 +186,21 @@ impl<'a> OptimumModel<'a> {
     fn own_kg_s(
         &self,
         point: &FlightPoint,
-        cell: &SmoothCell,
-        plain: Prediction,
+        at: (&SmoothCell, GuidePlace),
+        plain: &Prediction,
     ) -> Option<(f64, Vec<f64>)> {
         match &self.learnt {
             Learnt::Table(drawn) => {
-                let own = match self.own.effects() {
-                    Some(_) => self.own.predict(point).ok()?,
+                let with_effects = match self.own.effects() {
+                    Some(_) => &self.own.predict(point).ok()?,
                     None => plain,
                 };
-                let drawn = drawn.iter().map(|table| by_table(table, cell, &own)).collect();
-                Some((by_table(self.own.drag_table(), cell, &own), drawn))
+                let by_table = |table| {
+                    let drag = smooth_drag(table, self.own.base().levels(), at);
+                    with_drag(with_effects, plain, drag)
+                };
+                let drawn = drawn.iter().map(by_table).collect();
+                Some((by_table(self.own.drag_table()), drawn))
             }
             Learnt::Whole(whole, draws) => {
                 let found = whole.smooth_of_point(point).ok()?;
@@ -219,7 +219,8 @@ impl<'a> OptimumModel<'a> {
 
     /// What informs the model at a point; `None` where nothing does.
     fn informed(&self, lift_coefficient: f64, mach: f64) -> Option<Informed> {
-        let cell = self.book.grid().locate(lift_coefficient, mach, Outside::Error).ok()?;
+        let cell =
+            self.book.drag_table().grid().locate(lift_coefficient, mach, Outside::Error).ok()?;
         let parts = || {
             let nodes = cell.nodes().into_iter().zip(cell.weights());
             nodes.filter(|(_, weight)| *weight > NODE_WEIGHT_THRESHOLD).map(|(node, _)| node)
@@ -242,15 +243,21 @@ fn point_at(condition: MassAndDay, level: PressureAltitude, mach: f64) -> Flight
     }
 }
 
-/// What is predicted, moved to the smooth surface of a table.
-fn by_table(table: &Table, cell: &SmoothCell, prediction: &Prediction) -> f64 {
-    by_drag(cell.value_of(table), prediction)
+/// Drag coefficient on the smooth surface of a table, with its factor by level.
+fn smooth_drag(
+    table: &Table,
+    levels: Option<&GuideLevels>,
+    (cell, place): (&SmoothCell, GuidePlace),
+) -> f64 {
+    cell.value_of(table) * levels.map_or(1.0, |levels| levels.factor(place))
 }
 
-fn by_drag(drag_coefficient: f64, prediction: &Prediction) -> f64 {
-    prediction.fuel_flow_total.to_kilograms_per_second()
-        + (drag_coefficient - prediction.drag_coefficient)
-            * prediction.fuel_flow_per_drag_coefficient_kg_s
+/// What is predicted, with this drag in place of that of the table; `plain` is the prediction without the effects that the model
+/// contains.
+fn with_drag(predicted: &Prediction, plain: &Prediction, drag_coefficient: f64) -> f64 {
+    predicted.fuel_flow_total.to_kilograms_per_second()
+        + (drag_coefficient - plain.drag_coefficient)
+            * predicted.fuel_flow_per_drag_coefficient_kg_s
 }
 
 /// Every thousandth from the first to the last Mach number of a table.

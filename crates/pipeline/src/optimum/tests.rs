@@ -1,9 +1,10 @@
 use std::fmt::Write;
 
-use perf_model::{Aircraft, Guide, initial_model};
+use effects::{AppliedEffects, AppliedLayer, EffectReferences, Effects};
+use flight::effect::EffectId;
+use perf_model::{Aircraft, Guide, GuideLevel, GuideLevels, initial_model};
 
 use super::*;
-use crate::model_file::{GuideBook, GuideLevel, GuideLevels};
 
 /// A guide of a parabolic polar: CD = 0.02 + 0.045 CL², whatever the Mach number, by the TSFC law of the aircraft.
 const CD0: f64 = 0.02;
@@ -280,26 +281,59 @@ fn the_optimum_of_a_whole_model_is_that_of_its_predictions() {
     assert!(range(found.mach) > 0.999 * most, "{} {most}", range(found.mach));
 }
 
-/// What the book burns more at a level moves its choices and none of the model's own: fuel flow is in proportion to drag.
+/// What drag is more at a level the book burns more there, and a model that has learnt nothing, which plans by it: fuel flow is in
+/// proportion to drag.
 #[test]
-fn the_book_of_a_taught_model_has_its_factor_by_level() {
-    let level = PressureAltitude::feet(41_000.0);
-    let file = ModelFile { guide_book: None, ..crate::prediction::tests::whole() };
+fn the_book_has_its_factor_by_level() {
+    let level = PressureAltitude::feet(37_000.0);
+    let file = model(0.05, 0.0);
     let more = GuideLevel { pressure_altitude_m: level.to_meters(), shares: [0.03, 0.0, 0.0] };
-    let book = GuideBook {
-        drag_table: file.reference().drag_table().clone(),
-        levels: GuideLevels::new([(0.2, 0.6), (0.7, 0.9)], vec![more]).unwrap(),
-    };
-    let with_level = ModelFile { guide_book: Some(Box::new(book)), ..file.clone() };
+    let levels = GuideLevels::new([(0.2, 0.6), (0.7, 0.9)], vec![more]).unwrap();
     let condition = MassAndDay {
-        mass: Mass::kilograms(32_000.0),
+        mass: Mass::kilograms(20_000.0),
         isa_deviation: TemperatureDifference::kelvin(0.0),
     };
-    let curve = |file: &ModelFile| OptimumModel::new(file, 0, 1).unwrap().curve(condition, level);
-    let (without, with) = (curve(&file), curve(&with_level));
-    assert_eq!(with.own_kg_s, without.own_kg_s);
+    let curve = |levels: GuideLevels| {
+        let initial = file.initial.base().clone().with_levels(levels).into();
+        let file = ModelFile { initial, by_guide: None, ..file.clone() };
+        OptimumModel::new(&file, 0, 1).unwrap().curve(condition, level)
+    };
+    let (without, with) = (curve(GuideLevels::default()), curve(levels));
     assert!(with.book_kg_s.len() > 50);
     for (more, kg_s) in with.book_kg_s.iter().zip(&without.book_kg_s) {
         assert!((more / kg_s - 1.03).abs() < 1e-12, "{more} {kg_s}");
+    }
+    for (more, kg_s) in with.own_kg_s.iter().zip(&without.own_kg_s) {
+        assert!((more / kg_s - 1.03).abs() < 1e-12, "{more} {kg_s}");
+    }
+}
+
+/// A table alone with 5 % more drag burns 5 % more than the book at every Mach number: fuel flow is in proportion to drag, and what
+/// moves a prediction from chords to the smooth surface is not the effect.
+#[test]
+fn effects_on_drag_stay_in_fuel_flow() {
+    let file = model(0.05, 0.0);
+    let references = EffectReferences {
+        date_s: 0.0,
+        mach: 0.7,
+        unit_reynolds_number_per_m: 5e6,
+        temperature_ratio: 0.75,
+        corrected_thrust_n: 1e5,
+        fuel_flow_total_kg_s: 0.4,
+        mass_kg: 30_000.0,
+        center_of_gravity_percent_mac: None,
+    };
+    let layer = AppliedLayer::new(Effects::one(EffectId::DragFactor, 5.0), references);
+    let more = file.initial.with_effects(AppliedEffects::new(vec![layer])).unwrap();
+    let file = ModelFile { initial: more, by_guide: None, ..file };
+    let condition = MassAndDay {
+        mass: Mass::kilograms(20_000.0),
+        isa_deviation: TemperatureDifference::kelvin(0.0),
+    };
+    let level = PressureAltitude::feet(37_000.0);
+    let curve = OptimumModel::new(&file, 0, 1).unwrap().curve(condition, level);
+    assert!(curve.own_kg_s.len() > 50);
+    for (own, book) in curve.own_kg_s.iter().zip(&curve.book_kg_s) {
+        assert!((own / book - 1.05).abs() < 3e-3, "{own} {book}");
     }
 }

@@ -6,13 +6,20 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+use diagnose::{FlightRecord, Input, Options, diagnose};
+use effects::{BetweenNodes, ExtendedModel};
 use flight::{Cruise, FlightIdentity, Segment, SegmentMeans};
 use lut::{Outside, SmoothCell};
 use perf_model::initial::observe_guide_point;
-use perf_model::{Aircraft, Guide, initial_model};
+use perf_model::{
+    Aircraft, FlightPoint, Guide, GuideLevels, GuidePlace, LevelFlights, initial_model,
+};
 use pipeline::evaluation::{BookEffects, evaluate, evaluate_book};
 use pipeline::model_file::ModelFile;
 use pipeline::segments_table::Evaluated;
+use pipeline::whole_model::{HeldAgainst, Predicts};
+use test_support::Random;
+use units::{Mach, Mass, PressureAltitude};
 
 const AIRCRAFT: &str = include_str!("../../../../fixtures/global5000/AIRCRAFT.ron");
 const GUIDE: &[u8] = include_bytes!("../../../../fixtures/global5000/guide.csv");
@@ -115,6 +122,82 @@ fn rows_of_a_polynomial_come_back_whatever_the_grid() {
 /// 0.65 % off them, one with a factor by level 0.1 %.
 #[test]
 fn rows_that_were_left_out_are_read_by_level() {
+    let (model, segments) = of_two_thirds();
+    let rms = |model: &ModelFile| {
+        let by_book = evaluate_book(model, BookEffects::OfModel, &segments).into_iter();
+        let errors: Vec<f64> = by_book.flatten().filter_map(|of| of.error_percent).collect();
+        assert!(errors.len() > 60, "{}", errors.len());
+        (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+    };
+    let by_level = rms(&model);
+    let reference = model.reference().base();
+    let without = reference.clone().with_levels(GuideLevels::default());
+    let by_table = rms(&ModelFile { by_guide: Some(Box::new(without.into())), ..model.clone() });
+    assert!(by_level < 0.2 && by_table > 0.5, "{by_level} against {by_table}");
+    // As it is written.
+    let read = ModelFile::from_text(&model.to_text().unwrap()).unwrap();
+    assert_eq!(read.reference(), model.reference());
+}
+
+/// The oracle is the book, whose fuel flow each row burns: predictions of everything that refers to it have its factor by level, too,
+/// whoever is asked, and so have observations, which are of the table.
+#[test]
+fn all_that_refers_to_the_guide_has_its_levels() {
+    let (model, segments) = of_two_thirds();
+    let reference = model.reference();
+    let levels = reference.base().levels().unwrap();
+    let by_book = evaluate_book(&model, BookEffects::OfModel, &segments);
+    let mut asked = 0;
+    for (segment, by_book) in segments.iter().zip(by_book) {
+        let Some(error) = by_book.and_then(|of| of.error_percent) else { continue };
+        asked += 1;
+        let means = &segment.means;
+        let recorded = means.fuel_flow_total_kg_s;
+        let found = reference.predict_segment(segment, reference.drag_table()).unwrap();
+        // Tables are bilinear there and the book is smooth.
+        let table = reference.drag_table();
+        let smooth = SmoothCell::locate(table.grid(), found.state.lift_coefficient, means.mach);
+        let chord = table.interpolate(&found.cell) / smooth.unwrap().value_of(table);
+        let by_segment = found.fuel_flow_total.to_kilograms_per_second() / chord;
+        let by_book = recorded * (1.0 - error / 100.0);
+        assert!((by_segment / by_book - 1.0).abs() < 1e-12, "{by_segment} {by_book}");
+        let point = FlightPoint::new(
+            Mass::kilograms(means.mass_kg),
+            PressureAltitude::meters(means.pressure_altitude_m),
+            Mach::new(means.mach),
+        );
+        let by_point = reference.predict(&point).unwrap().fuel_flow_total;
+        let by_effects = reference.response(&point).unwrap().ln_fuel_flow_total.exp();
+        let columns = LevelFlights {
+            mass_kg: &[means.mass_kg],
+            pressure_altitude_m: &[means.pressure_altitude_m],
+            mach: &[means.mach],
+            isa_deviation_k: &[0.0],
+        };
+        let mut by_columns = reference.base().fuel_flows_kg_s(columns);
+        reference.base().predict_level(columns, |_, found| {
+            by_columns.push(found.fuel_flow_total.to_kilograms_per_second());
+        });
+        let by_point = by_point.to_kilograms_per_second() / chord;
+        for by_column in by_columns {
+            assert!((by_column / chord / by_point - 1.0).abs() < 1e-11, "{by_column} {by_point}");
+        }
+        assert!((by_point / by_book - 1.0).abs() < 1e-9, "{by_point} {by_book}");
+        assert!((by_effects / chord / by_book - 1.0).abs() < 1e-9, "{by_effects} {by_book}");
+        let observed = reference.observe(segment).unwrap();
+        let factor = levels.factor(GuidePlace {
+            lift_coefficient: observed.lift_coefficient,
+            mach: observed.mach,
+            pressure_altitude: PressureAltitude::meters(means.pressure_altitude_m),
+        });
+        let plain = model.initial.observe(segment).unwrap();
+        assert!((observed.drag_coefficient * factor / plain.drag_coefficient - 1.0).abs() < 1e-12);
+    }
+    assert!(asked > 60, "{asked}");
+}
+
+/// The same aircraft's model by two thirds of the rows of its guide, and what an aircraft burns that flies the others.
+fn of_two_thirds() -> (ModelFile, Vec<Segment>) {
     let aircraft = include_str!("../../../../fixtures/a320-generic/AIRCRAFT.ron");
     let aircraft = Aircraft::from_ron(aircraft).unwrap();
     let text = include_str!("../../../../fixtures/a320-generic/guide.csv");
@@ -128,18 +211,50 @@ fn rows_that_were_left_out_are_read_by_level() {
     let guide = Guide::from_csv(kept.as_bytes()).unwrap();
     let model = ModelFile::from_initial(&initial_model(&aircraft, &guide).unwrap(), &guide);
     let rows = Guide::from_csv(left_out.as_bytes()).unwrap();
-    let segments: Vec<Segment> = rows.points().iter().map(flown).collect();
-    let rms = |model: &ModelFile| {
-        let by_book = evaluate_book(model, BookEffects::OfModel, &segments).into_iter();
-        let errors: Vec<f64> = by_book.flatten().filter_map(|of| of.error_percent).collect();
-        assert!(errors.len() > 60, "{}", errors.len());
-        (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+    (model, rows.points().iter().map(flown).collect())
+}
+
+/// Flights that burn what the guide prints have no gap to a model that has learnt nothing: it is held against them by the guide, smooth
+/// between the nodes and level by level. By chords of the same table, and by the table of the middle level, they have one.
+#[test]
+fn a_guide_that_is_flown_has_no_gap() {
+    let (model, segments) = of_two_thirds();
+    let records: Vec<FlightRecord<'_>> =
+        segments.chunks(6).map(|segments| FlightRecord { segments, gauges: None }).collect();
+    let HeldAgainst { model: reference, drag_table, between_nodes } =
+        model.held_against(Predicts::WholeModel);
+    let options = Options { skip_closure: true, skip_where: true, ..Options::default() };
+    let rms_percent = |reference: &ExtendedModel, between_nodes| {
+        let input = Input { drag_table, between_nodes, ..Input::against(reference, &records) };
+        diagnose(&input, &options).unwrap().gap.rms_percent
     };
-    let by_level = rms(&model);
-    let by_table = rms(&ModelFile { guide_book: None, ..model.clone() });
-    assert!(by_level < 0.2 && by_table > 0.5, "{by_level} against {by_table}");
-    // As it is written.
-    let read = ModelFile::from_text(&model.to_text().unwrap()).unwrap();
-    assert_eq!(read.guide_book, model.guide_book);
-    assert!(model.guide_book.is_some());
+    let without = reference.base().clone().with_levels(GuideLevels::default()).into();
+    let found = rms_percent(reference, between_nodes);
+    let (by_chords, by_table) =
+        (rms_percent(reference, BetweenNodes::Straight), rms_percent(&without, between_nodes));
+    assert!(found < 0.2 && by_chords > 0.3 && by_table > 0.5, "{found} {by_chords} {by_table}");
+}
+
+/// Rows that scatter by more than levels differ, as those of a guide made of flights, have no levels.
+#[test]
+fn rows_that_scatter_have_no_levels() {
+    let aircraft = Aircraft::from_ron(AIRCRAFT).unwrap();
+    let printed = Guide::from_csv(GUIDE).unwrap();
+    let has_levels = |scatter_percent: f64| {
+        let mut random = Random::new(11, 0);
+        let mut text =
+            String::from("mass_kg,pressure_altitude_ft,true_airspeed_kt,fuel_flow_kg_h\n");
+        for row in printed.points() {
+            let kg_h = row.fuel_flow_total.to_kilograms_per_second()
+                * 3600.0
+                * (1.0 + 0.01 * random.normal(0.0, scatter_percent));
+            let (mass_kg, altitude_ft) = (row.mass.to_kilograms(), row.pressure_altitude.to_feet());
+            let true_airspeed_kt = row.true_airspeed.to_knots();
+            writeln!(text, "{mass_kg},{altitude_ft},{true_airspeed_kt},{kg_h}").unwrap();
+        }
+        let guide = Guide::from_csv(text.as_bytes()).unwrap();
+        let model = ModelFile::from_initial(&initial_model(&aircraft, &guide).unwrap(), &guide);
+        model.reference().base().levels().is_some()
+    };
+    assert!(has_levels(0.0) && has_levels(0.3) && !has_levels(6.0));
 }

@@ -26,7 +26,6 @@ fn model() -> ModelFile {
         learnt: None,
         applied: Vec::new(),
         by_guide: None,
-        guide_book: None,
     }
 }
 

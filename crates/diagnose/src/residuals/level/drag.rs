@@ -2,9 +2,10 @@
 
 use effects::{BetweenNodes, value_continued};
 use lut::{Cells, Outside, SmoothTable, Table};
-use perf_model::LevelBlock;
+use perf_model::{GuideLevels, LevelBlock};
 
-use crate::math::lanes::{LANES, Lanes, each, map};
+use crate::math::lanes::{LANES, Lanes, add, each, map};
+use crate::residuals::level::by_level::Planes;
 use crate::signals::table_uncertainty::TableUncertainty;
 
 /// The initial table as the model was learnt with it, and what was learnt.
@@ -14,6 +15,7 @@ pub(super) struct Drag {
     between_nodes: BetweenNodes,
     smooth: SmoothTable,
     learnt: Option<LearntDrag>,
+    levels: Option<GuideLevels>,
 }
 
 /// What was learnt of the drag table: its mean at the nodes, and what the loadings leave out.
@@ -26,7 +28,7 @@ struct LearntDrag {
 /// Drag at the points of a block.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// The initial table's drag coefficient.
+    /// The initial drag coefficient: of the table, times its factor by level.
     pub(super) coefficient: Lanes,
     /// What was learnt, of ln drag.
     pub(super) learnt: Lanes,
@@ -44,7 +46,7 @@ pub(super) struct AlongLift {
 impl Drag {
     /// `None` where what was learnt makes no table.
     pub(super) fn new(
-        table: &Table,
+        (table, levels): (&Table, Option<&GuideLevels>),
         between_nodes: BetweenNodes,
         learnt: Option<(&TableUncertainty, &[f64])>,
     ) -> Option<Self> {
@@ -52,7 +54,13 @@ impl Drag {
             Some((uncertainty, means)) => Some(LearntDrag::new(uncertainty, means)?),
             None => None,
         };
-        Some(Self { table: table.clone(), between_nodes, smooth: SmoothTable::new(table), learnt })
+        let (smooth, table) = (SmoothTable::new(table), table.clone());
+        Some(Self { table, between_nodes, smooth, learnt, levels: levels.cloned() })
+    }
+
+    /// The factors by level at the points of a block, moved by so much; `None` where there are none.
+    pub(super) fn planes(&self, block: &LevelBlock, by_m: f64) -> Option<Planes> {
+        self.levels.as_ref().map(|levels| Planes::at(levels, block, by_m))
     }
 
     /// Drag at points; false in `is_known` where there is none, or none that is positive.
@@ -61,6 +69,7 @@ impl Drag {
     pub(super) fn at(
         &self,
         (lift_coefficient, mach): (&Lanes, &Lanes),
+        planes: Option<&Planes>,
         is_known: &mut [bool; LANES],
     ) -> Found {
         let mut cells = Cells::default();
@@ -72,6 +81,9 @@ impl Drag {
                     self.continued(lift_coefficient[place], mach[place]).unwrap_or((f64::NAN, 0.0));
             }
         }
+        if let Some(planes) = planes {
+            found.multiply(&planes.factor((lift_coefficient, mach)));
+        }
         found.keep_positive(is_known);
         found
     }
@@ -79,8 +91,16 @@ impl Drag {
     /// Drag at the points of a block; false in `is_known` where it is not positive.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    pub(super) fn of_block(&self, block: &LevelBlock, is_known: &mut [bool; LANES]) -> Found {
+    pub(super) fn of_block(
+        &self,
+        block: &LevelBlock,
+        planes: Option<&Planes>,
+        is_known: &mut [bool; LANES],
+    ) -> Found {
         let mut found = self.in_cells(&block.cells);
+        if let Some(planes) = planes {
+            found.multiply(&planes.factor((&block.lift_coefficient, &block.mach)));
+        }
         found.keep_positive(is_known);
         found
     }
@@ -91,6 +111,7 @@ impl Drag {
     pub(super) fn of_block_along_lift(
         &self,
         block: &LevelBlock,
+        planes: Option<&Planes>,
         is_known: &mut [bool; LANES],
     ) -> (Found, AlongLift) {
         let (cells, lift) = (&block.cells, &block.lift_coefficient);
@@ -107,6 +128,11 @@ impl Drag {
         let mut ln_drag = each(&slopes, lift, |slope, lift| slope * lift);
         for place in 0..LANES {
             ln_drag[place] /= found.coefficient[place];
+        }
+        if let Some(planes) = planes {
+            let along = planes.along_lift((lift, &block.mach));
+            found.multiply(&along.factor);
+            add(&mut ln_drag, 1.0, &along.ln_factor);
         }
         let learnt = each(&slopes_of_learnt, lift, |slope, lift| slope * lift);
         (found, AlongLift { ln_drag, learnt })
@@ -154,6 +180,12 @@ impl Drag {
 }
 
 impl Found {
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn multiply(&mut self, factor: &Lanes) {
+        self.coefficient = each(&self.coefficient, factor, |drag, factor| drag * factor);
+    }
+
     /// False in `is_known` where drag is not positive; 1 is put there, so that all goes on.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]

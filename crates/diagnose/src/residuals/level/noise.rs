@@ -13,6 +13,7 @@ use units::Mass;
 
 use crate::math::lanes::{LANES, Lanes, each, map};
 use crate::math::vector_ln_exp::ln;
+use crate::residuals::level::by_level::Planes;
 use crate::residuals::level::drag::{AlongLift, Drag, Found};
 use crate::residuals::level::functions::Slopes;
 use crate::residuals::level::states::{MachSide, States, ln_ratio, pressure_ratio};
@@ -40,6 +41,8 @@ pub(super) struct At<'b> {
     pub(super) states: &'b States,
     pub(super) drag: &'b Found,
     pub(super) along_lift: &'b AlongLift,
+    /// Slopes of ln of the factor by level along the pressure altitude, per m.
+    pub(super) factor_along_altitude: &'b Lanes,
     /// Of the remainder.
     pub(super) slopes: &'b Slopes,
     pub(super) sides: &'b [MachSide; 2],
@@ -62,7 +65,7 @@ impl Noise {
     #[inline(always)]
     pub(super) fn mach_sides(
         &self,
-        table: &Drag,
+        table: (&Drag, Option<&Planes>),
         (block, states): (&LevelBlock, &States),
         is_known: &mut [bool; LANES],
     ) -> [MachSide; 2] {
@@ -108,11 +111,11 @@ impl Noise {
     }
 
     /// With e and l the slopes of ln drag and of what was learnt of it along ln lift, r those of the remainder, g its mean for the
-    /// force along the path, p the slope of ln pressure along the altitude, lift and dynamic pressure being inversely proportional:
+    /// force along the path, p the slope of ln pressure along the altitude, f that of the factor by level, lift and dynamic pressure being inversely proportional:
     ///
     /// ```text
     /// ln mass       e + l + r_lift + r_thrust·e + r_mass
-    /// altitude      p·(1 − e − l − r_lift − r_thrust·e) + r_altitude − r_isa·dT/dh
+    /// altitude      p·(1 − e − l − r_lift − r_thrust·e) + f·(1 + r_thrust) + r_altitude − r_isa·dT/dh
     /// SAT           ½/T + r_isa           density falls and airspeed rises so that lift and drag stay
     /// acceleration  m/D·(1 + r_thrust − learnt + g)  drag stays; what is learnt of it counts by its share of thrust
     /// ```
@@ -136,8 +139,10 @@ impl Noise {
             let isa = slopes.isa_deviation_k[place];
             along.temperature_k[place] = 0.5 / block.static_air_temperature_k[place] + isa;
             let (pressure, standard_k_m) = along_altitude(states.pressure_altitude_m[place]);
+            let by_level = at.factor_along_altitude[place] * (1.0 + thrust);
             along.altitude_m[place] =
-                pressure * (1.0 - of_lift) + slopes.pressure_altitude_m[place] - isa * standard_k_m;
+                pressure * (1.0 - of_lift) + by_level + slopes.pressure_altitude_m[place]
+                    - isa * standard_k_m;
             let drag_n = block.dynamic_force_n[place] * drag.coefficient[place];
             along.acceleration_m_s2[place] =
                 states.mass_kg[place] / drag_n * (shown + thrust - drag.learnt[place]);
@@ -167,14 +172,14 @@ impl Noise {
 #[inline(always)]
 fn mach_side(
     by: f64,
-    table: &Drag,
+    (table, planes): (&Drag, Option<&Planes>),
     (block, states): (&LevelBlock, &States),
     is_known: &mut [bool; LANES],
 ) -> MachSide {
     let mach = map(&states.mach, |mach| mach + by);
     let square = each(&mach, &states.mach, |there, here| (there / here) * (there / here));
     let lift_coefficient = each(&states.lift_coefficient, &square, |lift, square| lift / square);
-    let found = table.at((&lift_coefficient, &mach), is_known);
+    let found = table.at((&lift_coefficient, &mach), planes, is_known);
     let thrust_n = each(&found.coefficient, &block.dynamic_force_n, |drag, force_n| drag * force_n);
     let thrust_n = each(&thrust_n, &square, |thrust_n, square| thrust_n * square);
     let mut corrected_thrust_n = thrust_n;
