@@ -16,6 +16,7 @@
 //!   are not.
 //! - It knows no effect: what a model may lack, and models that contain effects, are in the crate `effects`.
 //! - The TSFC law depends on temperature and Mach number, not on throttle or altitude.
+//! - A factor on drag by level ([`GuideLevels`]), where a model has one, is the guide's: nothing here learns it.
 //! - Outside the table there is an error and no value. Inside the table but outside the guide's range a value is marked
 //!   as extrapolated.
 //! - A guide that does not determine the polynomial within its own range is refused, with the reason in words.
