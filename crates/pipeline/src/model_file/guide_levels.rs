@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use perf_model::{GuideLevel, GuideLevels, GuidePlace, guide_terms};
 
-/// What rows leave of a table by level: places, and drag over that of the table, less 1. Empty where there are too few rows.
+/// What rows leave of a table by level: places, and drag over that of the table, less 1; `None` where there are too few rows.
 ///
 /// ```text
 /// r_k = X_k (b_k + e_k) + ε,   b_kj = u_j0 + u_j1 h_k + Σ_i w_ji·max(0, h_k − h_i)                        [bayes.16]
