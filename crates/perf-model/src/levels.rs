@@ -1,6 +1,5 @@
 //! By how much drag differs by level from a table over lift coefficient and Mach number.
 
-use flight::Observation;
 use units::PressureAltitude;
 
 /// By how much drag exceeds that of a table at each of some levels: a plane over lift coefficient and Mach number at each.
@@ -85,7 +84,7 @@ impl GuideLevels {
     #[must_use]
     pub fn factor(&self, place: GuidePlace) -> f64 {
         let shares = self.shares(place.pressure_altitude);
-        let terms = guide_terms((place.lift_coefficient, place.mach), self.ranges);
+        let terms = guide_terms(place, self.ranges);
         1.0 + shares[0] + shares[1] * terms[1] + shares[2] * terms[2]
     }
 
@@ -107,39 +106,16 @@ impl GuideLevels {
             (None, None) => [0.0; 3],
         }
     }
-
-    /// What was observed, as it would have been where the factor is 1.
-    #[must_use]
-    pub fn of_table(
-        &self,
-        observed: &Observation,
-        pressure_altitude: PressureAltitude,
-    ) -> Observation {
-        let factor = self.factor(GuidePlace {
-            lift_coefficient: observed.lift_coefficient,
-            mach: observed.mach,
-            pressure_altitude,
-        });
-        Observation {
-            drag_coefficient: observed.drag_coefficient / factor,
-            fuel_flow_per_drag_coefficient_kg_s: observed.fuel_flow_per_drag_coefficient_kg_s
-                * factor,
-            ..*observed
-        }
-    }
 }
 
 /// What the shares of a level multiply: 1, and lift coefficient and Mach number from -1 to 1 over their ranges, held at their ends.
 #[must_use]
 #[inline]
-pub fn guide_terms(
-    (lift_coefficient, mach): (f64, f64),
-    [lift, machs]: [(f64, f64); 2],
-) -> [f64; 3] {
+pub fn guide_terms(place: GuidePlace, [lift, mach]: [(f64, f64); 2]) -> [f64; 3] {
     let over = |value: f64, (low, high): (f64, f64)| {
         (2.0 * (value - low) / (high - low) - 1.0).clamp(-1.0, 1.0)
     };
-    [1.0, over(lift_coefficient, lift), over(mach, machs)]
+    [1.0, over(place.lift_coefficient, lift), over(place.mach, mach)]
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use flight::Segment;
+use flight::{Observation, Segment};
 use lut::surface::Surface;
 use lut::{Cell, Cells, Grid, Outside, OutsideGrid, Table};
 use units::{OutOfDomain, PressureAltitude};
@@ -134,10 +134,31 @@ impl PerformanceModel {
         self.levels.as_deref()
     }
 
-    /// The factor on the drag of the table.
-    fn factor(&self, lift_coefficient: f64, mach: f64, pressure_altitude: PressureAltitude) -> f64 {
-        let place = GuidePlace { lift_coefficient, mach, pressure_altitude };
+    /// The factor on the drag of the table: 1 where drag does not differ by level.
+    #[must_use]
+    #[inline]
+    pub fn level_factor(&self, place: GuidePlace) -> f64 {
         self.levels.as_deref().map_or(1.0, |levels| levels.factor(place))
+    }
+
+    /// What a model without levels has observed, as the table has it: without the factor.
+    #[must_use]
+    pub fn without_level(
+        &self,
+        observed: &Observation,
+        pressure_altitude: PressureAltitude,
+    ) -> Observation {
+        let factor = self.level_factor(GuidePlace {
+            lift_coefficient: observed.lift_coefficient,
+            mach: observed.mach,
+            pressure_altitude,
+        });
+        Observation {
+            drag_coefficient: observed.drag_coefficient / factor,
+            fuel_flow_per_drag_coefficient_kg_s: observed.fuel_flow_per_drag_coefficient_kg_s
+                * factor,
+            ..*observed
+        }
     }
 
     /// The aircraft.

@@ -312,14 +312,15 @@ fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Seg
             book: evaluate_book(model, BookEffects::OfModel, segments),
         };
     }
-    let book = model.by_guide.as_ref().map(|_| model.reference());
+    let book = model.by_guide.as_deref();
     let mut found = ByTables::default();
     for segment in segments {
         let (by_initial, by_learnt, by_guide) = if let Ok(observation) = initial.observe(segment) {
             let by = |table| Some(evaluated(table, segment, &observation));
             let by_initial = by(table);
             let by_guide = book.map(|book| {
-                let of_table = without_levels(book, segment, &observation);
+                let level = PressureAltitude::meters(segment.means.pressure_altitude_m);
+                let of_table = book.base().without_level(&observation, level);
                 by_book(book.drag_table(), segment, &of_table)
             });
             (by_initial, learnt.and_then(by), by_guide.or(by_initial))
@@ -334,19 +335,6 @@ fn evaluate_with_book(model: &ModelFile, learnt: Option<&Table>, segments: &[Seg
         found.book.push(by_guide);
     }
     found
-}
-
-/// What a model without levels observes, as the book's table has it.
-fn without_levels(
-    book: &ExtendedModel,
-    segment: &Segment,
-    observation: &Observation,
-) -> Observation {
-    let level = PressureAltitude::meters(segment.means.pressure_altitude_m);
-    match book.base().levels() {
-        Some(levels) => levels.of_table(observation, level),
-        None => *observation,
-    }
 }
 
 /// By the drag of the guide's rows, smooth between the nodes.

@@ -13,13 +13,11 @@ pub use json::{SCHEMA, json};
 pub use openap::{OpenapError, OpenapPolar, openap};
 pub use remainder::{LeftOut, remainder_left_out};
 
-use atmos::constants::RATIO_OF_SPECIFIC_HEATS;
-use atmos::isa;
 use perf_model::{GuideLevels, GuidePlace};
 use units::PressureAltitude;
-use units::convert::STANDARD_GRAVITY_M_S2;
 
 use crate::model_file::ModelFile;
+use crate::optimum::mass_at_kg;
 use crate::summary::counted;
 
 /// Which nodes guide or learnt flights inform.
@@ -58,15 +56,12 @@ pub fn rows_missed(model: &ModelFile) -> Option<[f64; 2]> {
 /// Factors at a node, by the levels at which the guide has its mass.
 fn factors_at(model: &ModelFile, levels: &GuideLevels, node: usize) -> impl Iterator<Item = f64> {
     let (lift_coefficient, mach) = model.grid().coordinates(node);
-    let area = model.initial.aircraft().wing_area().to_square_meters();
     let masses_kg = model.guide.mass_kg;
     levels.levels().iter().filter_map(move |level| {
         let pressure_altitude = PressureAltitude::meters(level.pressure_altitude_m);
-        let pressure = isa::pressure(pressure_altitude).ok()?.to_pascals();
-        let dynamic_pressure = 0.5 * RATIO_OF_SPECIFIC_HEATS * pressure * mach * mach;
-        let mass_kg = lift_coefficient * dynamic_pressure * area / STANDARD_GRAVITY_M_S2;
-        let is_printed = masses_kg.is_none_or(|(low, high)| (low..=high).contains(&mass_kg));
         let place = GuidePlace { lift_coefficient, mach, pressure_altitude };
+        let mass_kg = mass_at_kg(model, place)?;
+        let is_printed = masses_kg.is_none_or(|(low, high)| (low..=high).contains(&mass_kg));
         is_printed.then(|| levels.factor(place))
     })
 }

@@ -24,6 +24,7 @@ pub use fuel::{Informed, OptimumModel};
 pub use speeds::{Edge, Kind, OpenEnds};
 pub use text::{table, without_optimum};
 
+use perf_model::GuidePlace;
 use units::{Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
 
 use crate::model_file::ModelFile;
@@ -141,13 +142,23 @@ pub fn usual_masses(model: &ModelFile) -> Option<Vec<Mass>> {
 fn mass_of_guide_kg(model: &ModelFile) -> Option<f64> {
     let guide = &model.guide;
     let middle = |(low, high): (f64, f64)| f64::midpoint(low, high);
-    let level = PressureAltitude::feet(37_000.0);
+    let place = GuidePlace {
+        lift_coefficient: middle(guide.lift_coefficient),
+        mach: middle(guide.mach),
+        pressure_altitude: PressureAltitude::feet(37_000.0),
+    };
+    mass_at_kg(model, place)
+}
+
+/// The mass that has a lift coefficient at a level on a standard day; `None` beyond the atmosphere.
+pub(crate) fn mass_at_kg(model: &ModelFile, place: GuidePlace) -> Option<f64> {
+    let level = place.pressure_altitude;
     let sat = atmos::isa::temperature(level).ok()?;
-    let speed = atmos::airspeed::mach_to_true_airspeed(units::Mach::new(middle(guide.mach)), sat);
+    let speed = atmos::airspeed::mach_to_true_airspeed(units::Mach::new(place.mach), sat);
     let density = atmos::isa::density(atmos::isa::pressure(level).ok()?, sat);
     let pressure = atmos::airspeed::dynamic_pressure(density, speed).to_pascals();
     let area = model.initial.aircraft().wing_area().to_square_meters();
-    let weight_n = pressure * area * middle(guide.lift_coefficient);
+    let weight_n = pressure * area * place.lift_coefficient;
     Some(weight_n / units::convert::STANDARD_GRAVITY_M_S2)
 }
 

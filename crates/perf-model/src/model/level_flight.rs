@@ -22,6 +22,7 @@ use functions::Functions;
 
 use super::PerformanceModel;
 use crate::forces;
+use crate::levels::GuidePlace;
 use crate::specific_range::specific_range;
 use crate::variance::{self, RecordedPoint, TableSlopes};
 
@@ -149,8 +150,11 @@ impl PerformanceModel {
 
     #[inline]
     fn factor_at(&self, block: &LevelBlock, place: usize) -> f64 {
-        let level = PressureAltitude::meters(block.pressure_altitude_m[place]);
-        self.factor(block.lift_coefficient[place], block.mach[place], level)
+        self.level_factor(GuidePlace {
+            lift_coefficient: block.lift_coefficient[place],
+            mach: block.mach[place],
+            pressure_altitude: PressureAltitude::meters(block.pressure_altitude_m[place]),
+        })
     }
 
     /// Drag coefficient from the table, and with it the prediction; none outside a domain or the table.

@@ -71,11 +71,7 @@ impl PerformanceModel {
                 crate::fuel_flow::fuel_flow_per_drag_coefficient_kg_s(&state.conditions),
             variance: variance::observation_variance(self.aircraft(), segment, &state, slopes)?,
         };
-        let pressure_altitude = PressureAltitude::meters(means.pressure_altitude_m);
-        Ok(match self.levels() {
-            Some(levels) => levels.of_table(&observed, pressure_altitude),
-            None => observed,
-        })
+        Ok(self.without_level(&observed, PressureAltitude::meters(means.pressure_altitude_m)))
     }
 }
 

@@ -11,6 +11,7 @@ use units::{
 use super::{OutsideTable, PerformanceModel, same_grid};
 use crate::FlightPoint;
 use crate::fuel_flow::{self, CruiseConditions};
+use crate::levels::GuidePlace;
 use crate::specific_range::specific_range;
 use crate::tsfc::tsfc;
 use crate::{forces, state::SegmentState};
@@ -102,9 +103,12 @@ impl PerformanceModel {
             .grid()
             .locate(state.lift_coefficient, segment.means.mach, Outside::Error)
             .map_err(OutsideTable::from)?;
-        let level = PressureAltitude::meters(segment.means.pressure_altitude_m);
-        let drag_coefficient = drag_table.interpolate(&cell)
-            * self.factor(state.lift_coefficient, segment.means.mach, level);
+        let place = GuidePlace {
+            lift_coefficient: state.lift_coefficient,
+            mach: segment.means.mach,
+            pressure_altitude: PressureAltitude::meters(segment.means.pressure_altitude_m),
+        };
+        let drag_coefficient = drag_table.interpolate(&cell) * self.level_factor(place);
         let fuel_flow_total = fuel_flow::predicted_fuel_flow(&state.conditions, drag_coefficient);
         Ok(SegmentPrediction {
             state,
@@ -146,8 +150,12 @@ impl PerformanceModel {
         let lift_coefficient =
             forces::lift_coefficient(point.mass, conditions.dynamic_pressure, conditions.wing_area);
         let cell = self.locate(lift_coefficient, point.mach.value())?;
-        let drag_coefficient = self.drag_table().interpolate(&cell)
-            * self.factor(lift_coefficient, point.mach.value(), point.pressure_altitude);
+        let place = GuidePlace {
+            lift_coefficient,
+            mach: point.mach.value(),
+            pressure_altitude: point.pressure_altitude,
+        };
+        let drag_coefficient = self.drag_table().interpolate(&cell) * self.level_factor(place);
         let fuel_flow_total = fuel_flow::predicted_fuel_flow(&conditions, drag_coefficient);
         Ok(Prediction {
             fuel_flow_total,

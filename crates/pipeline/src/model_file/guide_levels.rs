@@ -31,7 +31,7 @@ pub(super) fn levels_of_rows(
         return None;
     }
     let smooth = Smooth::new(&groups);
-    let (variances, _) = smooth.likeliest(nearby, rows.len())?;
+    let variances = smooth.likeliest(nearby, rows.len())?;
     let planes = smooth.planes(&variances)?;
     let levels = groups
         .iter()
@@ -105,23 +105,28 @@ impl<'a> Smooth<'a> {
         Some((0..self.groups.len()).map(plane).collect())
     }
 
-    /// The variances of the largest evidence, and those of the round before.
-    fn likeliest(&self, nearby: Option<&Variances>, rows: usize) -> Option<(Variances, Variances)> {
+    /// The variances of the largest evidence.
+    fn likeliest(&self, nearby: Option<&Variances>, rows: usize) -> Option<Variances> {
         let square: f64 = self.groups.iter().map(|of| of.square).sum();
         let all = Vector3::repeat(square / rows as f64);
         let usual = Variances { within: all[0], own: all, line: all, bend: all };
         let mut found = nearby.copied().unwrap_or(usual);
-        let mut before = found;
-        for _ in 0..if nearby.is_some() { ROUNDS_NEARBY } else { ROUNDS } {
-            before = found;
+        let rounds = if nearby.is_some() { ROUNDS_NEARBY } else { ROUNDS };
+        for _ in 0..rounds {
             found = self.maximised(&found, &self.weights(&found)?, rows);
         }
-        Some((found, before))
+        Some(found)
     }
 
     fn share(&self, weights: &DVector<f64>, level: usize, term: usize) -> f64 {
-        let row = self.basis.row(level);
-        row.iter().enumerate().map(|(column, value)| value * weights[3 * column + term]).sum()
+        self.bends_below(level).map(|(column, value)| value * weights[3 * column + term]).sum()
+    }
+
+    /// The columns of the basis that are not 0 at a level, with their values there.
+    fn bends_below(&self, level: usize) -> impl Iterator<Item = (usize, f64)> {
+        let values = self.basis.row(level);
+        let columns = 0..values.len();
+        columns.map(move |column| (column, values[column])).filter(|(_, value)| *value != 0.0)
     }
 
     /// The weights by these variances: what a level has of its own is integrated out.
@@ -136,11 +141,10 @@ impl<'a> Smooth<'a> {
             let left = Matrix3::identity() - of.gram * of_own / within;
             let (told, of_rows) = (left * of.gram / within, left * of.product / within);
             own.push(of_own);
-            let values = self.basis.row(level);
-            for (a, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            for (a, value) in self.bends_below(level) {
                 let mut rows = product.fixed_rows_mut::<3>(3 * a);
-                rows += of_rows * *value;
-                for (b, other) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                rows += of_rows * value;
+                for (b, other) in self.bends_below(level) {
                     let mut block = precision.fixed_view_mut::<3, 3>(3 * a, 3 * b);
                     block += told * (value * other);
                 }
@@ -198,11 +202,9 @@ impl<'a> Smooth<'a> {
 
     /// Covariance of the plane at a level.
     fn covariance_at(&self, found: &Weights, level: usize) -> Matrix3<f64> {
-        let values = self.basis.row(level);
         let mut covariance = Matrix3::zeros();
-        let told = || values.iter().enumerate().filter(|(_, value)| **value != 0.0);
-        for (a, value) in told() {
-            for (b, other) in told() {
+        for (a, value) in self.bends_below(level) {
+            for (b, other) in self.bends_below(level) {
                 let block = found.covariance.fixed_view::<3, 3>(3 * a, 3 * b);
                 covariance += block * (value * other);
             }
@@ -246,8 +248,7 @@ fn by_level(rows: &[(GuidePlace, f64)], ranges: [(f64, f64); 2]) -> Vec<Group> {
             square: 0.0,
         };
         for (place, share) in rows {
-            let place = (place.lift_coefficient, place.mach);
-            let terms = Vector3::from(guide_terms(place, ranges));
+            let terms = Vector3::from(guide_terms(*place, ranges));
             group.gram += terms * terms.transpose();
             group.product += *share * terms;
             group.square += share * share;

@@ -4,7 +4,7 @@ use diagnose::WholeModel;
 use effects::ExtendedModel;
 use lut::{Outside, SmoothCell, Table};
 use perf_model::model::NODE_WEIGHT_THRESHOLD;
-use perf_model::{FlightPoint, GuideLevels, GuidePlace, Prediction};
+use perf_model::{FlightPoint, GuidePlace, Prediction};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -159,8 +159,9 @@ impl<'a> OptimumModel<'a> {
             mach,
             pressure_altitude: point.pressure_altitude,
         };
-        let book = smooth_drag(self.book.drag_table(), self.book.base().levels(), (&cell, place));
-        let book_kg_s = with_drag(&plain, &plain, book);
+        let book = self.book.base();
+        let book_drag = cell.value_of(book.drag_table()) * book.level_factor(place);
+        let book_kg_s = with_drag(&plain, &plain, book_drag);
         let (own_kg_s, drawn_kg_s) = self.own_kg_s(point, (&cell, place), &plain)?;
         if !(own_kg_s > 0.0 && book_kg_s > 0.0) {
             return None;
@@ -186,7 +187,7 @@ impl<'a> OptimumModel<'a> {
     fn own_kg_s(
         &self,
         point: &FlightPoint,
-        at: (&SmoothCell, GuidePlace),
+        (cell, place): (&SmoothCell, GuidePlace),
         plain: &Prediction,
     ) -> Option<(f64, Vec<f64>)> {
         match &self.learnt {
@@ -195,10 +196,9 @@ impl<'a> OptimumModel<'a> {
                     Some(_) => &self.own.predict(point).ok()?,
                     None => plain,
                 };
-                let by_table = |table| {
-                    let drag = smooth_drag(table, self.own.base().levels(), at);
-                    with_drag(with_effects, plain, drag)
-                };
+                let factor = self.own.base().level_factor(place);
+                let by_table =
+                    |table| with_drag(with_effects, plain, cell.value_of(table) * factor);
                 let drawn = drawn.iter().map(by_table).collect();
                 Some((by_table(self.own.drag_table()), drawn))
             }
@@ -241,15 +241,6 @@ fn point_at(condition: MassAndDay, level: PressureAltitude, mach: f64) -> Flight
         isa_deviation: condition.isa_deviation,
         ..FlightPoint::new(condition.mass, level, Mach::new(mach))
     }
-}
-
-/// Drag coefficient on the smooth surface of a table, with its factor by level.
-fn smooth_drag(
-    table: &Table,
-    levels: Option<&GuideLevels>,
-    (cell, place): (&SmoothCell, GuidePlace),
-) -> f64 {
-    cell.value_of(table) * levels.map_or(1.0, |levels| levels.factor(place))
 }
 
 /// What is predicted, with this drag in place of that of the table; `plain` is the prediction without the effects that the model

@@ -111,7 +111,8 @@ impl Noise {
     }
 
     /// With e and l the slopes of ln drag and of what was learnt of it along ln lift, r those of the remainder, g its mean for the
-    /// force along the path, p the slope of ln pressure along the altitude, f that of the factor by level, lift and dynamic pressure being inversely proportional:
+    /// force along the path, p the slope of ln pressure along the altitude, f that of the factor by level, lift and dynamic
+    /// pressure being inversely proportional:
     ///
     /// ```text
     /// ln mass       e + l + r_lift + r_thrust·e + r_mass

@@ -7,15 +7,20 @@ use super::*;
 use crate::residuals::whole::WholeModel;
 use crate::signals::record::FlightRecord;
 
+/// What twelve flights teach a model.
+fn taught(model: &ExtendedModel, seed: u64) -> Baseline {
+    let fleet = fly(seed, &Setup { flights: 12, ..Setup::default() }, &[], &Background::default());
+    let records: Vec<FlightRecord<'_>> =
+        fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
+    Baseline::learn(model, model.drag_table(), None, &records, None).unwrap()
+}
+
 /// The oracle is the same computation number by number, as on a processor without vectors: to the bit, inside the table and beside it,
 /// in blocks that are full and in one that is not.
 #[test]
 fn the_same_whatever_the_width_of_vectors() {
-    let fleet = fly(93, &Setup { flights: 12, ..Setup::default() }, &[], &Background::default());
-    let records: Vec<FlightRecord<'_>> =
-        fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
     let model = exact_model();
-    let taught = Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap();
+    let taught = taught(&model, 93);
     let whole = WholeModel::new(&model, &taught).unwrap().of_levels().unwrap();
     let mut random = Random::new(4, 1);
     let mut column =
@@ -58,10 +63,7 @@ fn drag_by_level_is_that_of_single_predictions() {
     ];
     let levels = GuideLevels::new([(0.25, 0.55), (0.68, 0.86)], levels).unwrap();
     let model = ExtendedModel::from(exact_model().base().clone().with_levels(levels));
-    let fleet = fly(94, &Setup { flights: 12, ..Setup::default() }, &[], &Background::default());
-    let records: Vec<FlightRecord<'_>> =
-        fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-    let taught = Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap();
+    let taught = taught(&model, 94);
     let whole = WholeModel::new(&model, &taught).unwrap();
     let by_levels = whole.of_levels().unwrap();
     let mut random = Random::new(5, 1);

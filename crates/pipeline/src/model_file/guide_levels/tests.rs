@@ -62,10 +62,7 @@ fn ln_evidence(rows: &[(GuidePlace, f64)], variances: &Variances) -> f64 {
     let (low, high) = (levels[0], levels[levels.len() - 1]);
     let scaled = |height: f64| 2.0 * (height - low) / (high - low) - 1.0;
     let covariance = DMatrix::from_fn(rows.len(), rows.len(), |a, b| {
-        let terms = |row: usize| {
-            let place = rows[row].0;
-            guide_terms((place.lift_coefficient, place.mach), ranges)
-        };
+        let terms = |row: usize| guide_terms(rows[row].0, ranges);
         let (at_a, at_b) = (scaled(heights[a]), scaled(heights[b]));
         let mut sum = if a == b { variances.within } else { 0.0 };
         for term in 0..3 {
@@ -94,9 +91,10 @@ fn variances_are_those_of_the_largest_evidence() {
     let rows = rows(noisy);
     let groups = by_level(&rows, levels_of_rows(&rows, None).unwrap().0.ranges());
     let smooth = Smooth::new(&groups);
-    let (variances, before) = smooth.likeliest(None, rows.len()).unwrap();
+    let variances = smooth.likeliest(None, rows.len()).unwrap();
     let best = ln_evidence(&rows, &variances);
-    assert!(best >= ln_evidence(&rows, &before));
+    let after = smooth.maximised(&variances, &smooth.weights(&variances).unwrap(), rows.len());
+    assert!(ln_evidence(&rows, &after) >= best);
     for factor in [0.4, 2.5] {
         let other = Variances { within: factor * variances.within, ..variances };
         assert!(best > ln_evidence(&rows, &other) + 1.0, "{variances:?}");
@@ -122,7 +120,7 @@ fn planes_are_what_rows_say_of_them() {
     let rows = rows(noisy);
     let groups = by_level(&rows, levels_of_rows(&rows, None).unwrap().0.ranges());
     let smooth = Smooth::new(&groups);
-    let (variances, _) = smooth.likeliest(None, rows.len()).unwrap();
+    let variances = smooth.likeliest(None, rows.len()).unwrap();
     let found = smooth.weights(&variances).unwrap().mean;
     let ranges = levels_of_rows(&rows, None).unwrap().0.ranges();
     let level_of = |row: usize| {
@@ -130,17 +128,13 @@ fn planes_are_what_rows_say_of_them() {
         groups.iter().position(|of| (of.pressure_altitude_m - at_m).abs() < 1.0).unwrap()
     };
     let design = DMatrix::from_fn(rows.len(), 12, |row, weight| {
-        let place = rows[row].0;
-        let terms = guide_terms((place.lift_coefficient, place.mach), ranges);
+        let terms = guide_terms(rows[row].0, ranges);
         smooth.basis[(level_of(row), weight / 3)] * terms[weight % 3]
     });
     let prior =
         DMatrix::from_diagonal(&DVector::from_fn(12, |weight, _| smooth.prior(&variances, weight)));
     let noise = DMatrix::from_fn(rows.len(), rows.len(), |a, b| {
-        let terms = |row: usize| {
-            let place = rows[row].0;
-            Vector3::from(guide_terms((place.lift_coefficient, place.mach), ranges))
-        };
+        let terms = |row: usize| Vector3::from(guide_terms(rows[row].0, ranges));
         let own = terms(a).component_mul(&terms(b)).dot(&variances.own);
         let of_level = if level_of(a) == level_of(b) { own } else { 0.0 };
         of_level + if a == b { variances.within } else { 0.0 }
